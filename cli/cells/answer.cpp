@@ -66,6 +66,16 @@ AnswerWords answer_words(std::string_view line) {
   return words;
 }
 
+std::vector<Cell::Remembered> numbers_in_memory(std::string_view memory,
+                                                std::vector<Cell::Remembered> numbers) {
+  for (Cell::Remembered& number : numbers) {
+    const std::size_t end = std::min(memory.find(','), memory.size());
+    number.value = finite(memory.substr(0, end), "memory: " + number.key);
+    memory.remove_prefix(std::min(end + 1, memory.size()));
+  }
+  return numbers;
+}
+
 Passage read_answer(const AnswerWords& words, const Section& section, Body& body) {
   const std::string_view fate = words.word[1];
   const std::size_t coordinates = section.coordinates.size(), costs = section.costs.size();

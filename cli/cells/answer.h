@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dynamics/cells/cell.h"
 
@@ -40,6 +41,11 @@ template <class Number>
 struct WrongAnswer {
   std::string what;
 };
+
+/// The numbers with which a body's memory begins, separated by commas. Throws WrongAnswer if one
+/// is missing or not finite.
+[[nodiscard]] std::vector<dynamics::Cell::Remembered> numbers_in_memory(
+    std::string_view memory, std::vector<dynamics::Cell::Remembered> numbers);
 
 /// Moves the body as an answer says, and returns the passage. The answer's first word is the
 /// passage's id, which the caller reads. Throws WrongAnswer.

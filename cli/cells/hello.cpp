@@ -71,6 +71,12 @@ class HelloTable {
       refuse_value(key, fmt::format("a whole number from {} to {}", low, high));
     return value->get<int>();
   }
+  [[nodiscard]] bool flag(std::string_view key) const {
+    const Json* const value = find(key);
+    if (value == nullptr) return false;
+    if (!value->is_boolean()) refuse_value(key, "true or false");
+    return value->get<bool>();
+  }
   [[nodiscard]] const Json& list(std::string_view key) const {
     const Json& value = at(key);
     if (!value.is_array()) refuse_value(key, "a list [ ]");
@@ -182,6 +188,28 @@ void read_costs(const Json& list, dynamics::Section& section) {
     refuse_hello("'costs' must name at least one; the first one is a time");
 }
 
+std::vector<dynamics::Cell::Remembered> read_remembered(const Json& list,
+                                                        const dynamics::Section& section) {
+  std::vector<dynamics::Cell::Remembered> remembered;
+  std::vector<std::string> names;
+  for (const dynamics::Coordinate& c : section.coordinates) names.push_back(c.name);
+  for (const Json& one : list) {
+    const std::string where = fmt::format("remembered number {}", remembered.size() + 1);
+    const HelloTable table(one, where, {"key", "odd"});
+    remembered.push_back({.key = table.word("key"), .odd = table.flag("odd")});
+    if (std::find(names.begin(), names.end(), remembered.back().key) != names.end())
+      refuse_hello(fmt::format("{}: '{}' is the name of another number", where,
+                               excerpt(remembered.back().key, 60)));
+    names.push_back(remembered.back().key);
+  }
+  if (remembered.size() > dynamics::Cell::kMostRemembered ||
+      names.size() > dynamics::kMostCoordinates)
+    refuse_hello(
+        fmt::format("'remembered' must be at most {} numbers, and {} together with 'coordinates'",
+                    dynamics::Cell::kMostRemembered, dynamics::kMostCoordinates));
+  return remembered;
+}
+
 Hello::Parameter read_parameter(const std::string& key, const Json& value) {
   const std::string where = fmt::format("parameter '{}'", excerpt(key, 60));
   if (!is_word(key) || key.find('=') != key.npos)
@@ -206,17 +234,14 @@ Hello read_hello(std::string_view line) {
   if (json.is_discarded()) refuse_hello("it is not JSON");
   const HelloTable table(json, "it",
                          {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
-                          "uniforms", "parameters"});
+                          "uniforms", "parameters", "remembered"});
   if (const Json& version = table.at("gatewalk"); version != kProgramProtocol)
     refuse_hello(fmt::format("'gatewalk' is the protocol, which must be {}", kProgramProtocol));
   Hello hello;
   read_coordinates(table.list("coordinates"), hello.section);
   if (hello.section.coordinates.size() > dynamics::kMostCoordinates)
     refuse_hello(fmt::format("'coordinates' must be at most {}", dynamics::kMostCoordinates));
-  if (const Json* const symmetric = table.find("symmetric")) {
-    if (!symmetric->is_boolean()) table.refuse_value("symmetric", "true or false");
-    hello.symmetric = symmetric->get<bool>();
-  }
+  hello.symmetric = table.flag("symmetric");
   read_faces(table.list("faces"), hello.section, hello.symmetric);
   read_costs(table.list("costs"), hello.section);
   hello.section.validate();
@@ -229,6 +254,8 @@ Hello read_hello(std::string_view line) {
     for (const auto& [key, value] : parameters->items())
       hello.parameters.push_back(read_parameter(key, value));
   }
+  if (table.find("remembered") != nullptr)
+    hello.remembered = read_remembered(table.list("remembered"), hello.section);
   return hello;
 }
 

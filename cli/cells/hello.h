@@ -25,6 +25,7 @@ struct Hello {
   bool symmetric = false;
   int normals = 0, uniforms = 0;  // random numbers of a passage; one is 0
   std::vector<Parameter> parameters;
+  std::vector<dynamics::Cell::Remembered> remembered;  // with which numbers a body's memory begins
 };
 
 /// Draws the noise of a passage, number by number, into `take`, and returns the passage's seed. The

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -134,6 +135,14 @@ bool ProgramCell::is_symmetric() const { return program_->hello.symmetric; }
 
 void ProgramCell::begin(Body& body) const { body.carried.put(carried_words(kNoMemory)); }
 
+std::vector<Cell::Remembered> ProgramCell::remembered(const Body& body) const {
+  const std::string_view memory = body.carried.as<CarriedWords>().words();
+  std::vector<Remembered> numbers = program_->hello.remembered;
+  if (memory != kNoMemory) return numbers_in_memory(memory, std::move(numbers));
+  for (Remembered& number : numbers) number.value = std::numeric_limits<double>::quiet_NaN();
+  return numbers;
+}
+
 std::vector<Cell::Number> ProgramCell::numbers() const {
   std::vector<Number> all;
   for (std::size_t k = 0; k < values_.size(); ++k)
@@ -257,6 +266,9 @@ void ProgramCell::carry_out_by(std::unique_ptr<Running> running, const NextPassa
           throw WrongAnswer{"its first word is not the id of a passage that is under way"};
         slots[at].id.reset();
         const Passage passage = read_answer(words, hello.section, slots[at].body);
+        if (passage.fate == Fate::left)
+          static_cast<void>(numbers_in_memory(slots[at].body.carried.as<CarriedWords>().words(),
+                                              hello.remembered));
         ++health.runs;
         health.broken += passage.fate == Fate::broken;
         if (next(slots[at].body, &passage))

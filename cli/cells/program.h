@@ -44,6 +44,9 @@ class ProgramCell : public dynamics::Cell {
   /// Gives the body an empty memory.
   void begin(dynamics::Body& body) const override;
 
+  /// The numbers with which the body's memory begins.
+  [[nodiscard]] std::vector<Remembered> remembered(const dynamics::Body& body) const override;
+
   /// The program's parameters with their values.
   [[nodiscard]] std::vector<Number> numbers() const override;
   /// The cell with parameter `number` multiplied by `times`, in processes of its own; null if the

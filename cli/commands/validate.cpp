@@ -247,6 +247,7 @@ struct Bodies {
   ShownField shown;
   Provenance made_by;
   int per_leaf = dynamics::kEntriesPerLeaf;
+  std::optional<lattice::Remembering> remembering{};  // the same bodies, if they remember numbers
 };
 
 /// The recorded bodies of a table or of a matrix; nullopt: nothing was recorded.
@@ -299,11 +300,15 @@ Bodies simulated_bodies(const ValidateCommand& options) {
     throw UsageError(fmt::format("--order: takes one --start, these are {}", s.starts.size()));
   s.problem.start = s.entries().front();
   choose_method(options, s);
-  return {s.problem,
-          std::make_shared<lattice::RunPool>(lattice::simulated_bodies(
-              s.problem, options.trials ? options.trials.value() : kTrials, options.seed(),
-              options.work())),
-          ShownField(s), options.provenance(s)};
+  const std::int64_t trials = options.trials ? options.trials.value() : kTrials;
+  Bodies bodies{s.problem, nullptr, ShownField(s), options.provenance(s)};
+  bodies.remembering =
+      lattice::remembering_bodies(s.problem, trials, options.seed(), options.work());
+  bodies.pool = std::make_shared<lattice::RunPool>(
+      bodies.remembering
+          ? bodies.remembering->seen_in(s.problem)
+          : lattice::simulated_bodies(s.problem, trials, options.seed(), options.work()));
+  return bodies;
 }
 
 /// validate --order: what must the chain remember?
@@ -326,7 +331,8 @@ int validate_order(const ValidateCommand& options) {
     bodies->problem.cells.map.section = dynamics::Words::plain(labelled);
   }
   const OrderResult result{
-      .study = lattice::study_order(bodies->problem, *bodies->pool, how, options.work()),
+      .study = lattice::study_order(bodies->problem, *bodies->pool, how, options.work(),
+                                    bodies->remembering ? &*bodies->remembering : nullptr),
       .recorded = counts_of(*bodies->pool),
       .is_recorded = is_recorded,
       .made_by = bodies->made_by};
@@ -357,7 +363,7 @@ int validate_recorded(const ValidateCommand& options, const Bodies& bodies) {
           options.memory, options.strict, options.shard, options.part, options.checkpoint,
           options.resume, options.max_time},
          fmt::format("for {}: validate predicts one half of its bodies from the other half", path));
-  const auto& [problem, pool, shown, made_by, per_leaf] = bodies;
+  const auto& [problem, pool, shown, made_by, per_leaf, remembering] = bodies;
   lattice::CrossValidationOptions how{
       .null_draws = {}, .seed = options.seed(), .per_leaf = per_leaf};
   if (options.null_draws) how.null_draws = options.null_draws.value(1, kMostNullDraws);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/order.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -62,6 +62,22 @@ std::string verdict(const OrderStudy& study) {
         " More gain nothing that {} bodies can show: a passage becomes at most {} more likely.",
         study.bodies, percent_of(a.interval[1]));
   return text;
+}
+
+/// What the numbers that bodies remember would add to the chain; empty: they remember none.
+std::string remembered_text(const OrderStudy& study) {
+  if (!study.remembered) return "";
+  const lattice::RememberedAnswer& a = *study.remembered;
+  const std::string keys = fmt::format("{}", fmt::join(a.keys, ", "));
+  return a.matters()
+             ? fmt::format(
+                   "The chain forgets what bodies carry ({}): with it a passage would be {} "
+                   "more likely [{}, {}].",
+                   keys, percent_of(a.gain), percent_of(a.interval[0]), percent_of(a.interval[1]))
+             : fmt::format(
+                   "The chain need not know what bodies carry ({}): a passage would become "
+                   "at most {} more likely.",
+                   keys, percent_of(std::max(0.0, a.interval[1])));
 }
 
 /// Whether bodies do what the chain of that order says, with the caution that few bodies need.
@@ -151,6 +167,16 @@ void describe_order(Fields& out, const OrderResult& result) {
         f.number({"p", "1", "p-value of the difference of the halves, all statistics together"},
                  a.halves.p);
       });
+  out.if_any(Label("remembered",
+                   "what the chain would gain by the numbers that bodies carry and that their "
+                   "entries do not show"),
+             study.remembered, [](Fields& f, const lattice::RememberedAnswer& a) {
+               f.texts({"numbers", "their keys"}, a.keys);
+               f.estimate(Field("gain", "1", "by which share the likelihood would be larger")
+                              .bounded_by("95 % interval of gain, by draws of bodies"),
+                          a.gain, known(a.interval));
+               f.flag({"matters", "whether the chain forgets something that matters"}, a.matters());
+             });
   out.count({"passages", "1", "passages with a known outcome"}, study.passages);
   out.count({"max_gates", "1",
              "number of cells after which the halves are compared: field.max_gates, or what nine "
@@ -162,7 +188,8 @@ void describe_order(Fields& out, const OrderResult& result) {
 
 std::string answer_text(const OrderResult& result) {
   const OrderStudy& study = result.study;
-  std::string text = wrapped(verdict(study)) + wrapped(what_is_left(study));
+  std::string text = wrapped(verdict(study)) + wrapped(remembered_text(study)) +
+                     wrapped(what_is_left(study));
   TextTable table({{"Order", 5},
                    {"likelihood", 12, 4},
                    {"best order more likely by, 95 %", 34},

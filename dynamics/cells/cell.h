@@ -50,6 +50,10 @@ class Carried {
   [[nodiscard]] T& as() {
     return *std::launder(reinterpret_cast<T*>(bytes_));
   }
+  template <class T>
+  [[nodiscard]] const T& as() const {
+    return *std::launder(reinterpret_cast<const T*>(bytes_));
+  }
 
  private:
   alignas(std::max_align_t) std::byte bytes_[kMostBytes];
@@ -101,6 +105,17 @@ class Cell {
   virtual void begin(Body&) const {}
   /// Replaces the carried state as if the body began a trial here, with noise not used yet.
   virtual void forget(Body& body) const { begin(body); }
+  /// A number in the carried state.
+  struct Remembered {
+    std::string key;  // "held_for_s"
+    double value = 0.0;
+    bool odd = false;  // whether it changes its sign in the mirror
+  };
+  static constexpr std::size_t kMostRemembered = 4;
+  /// Numbers that the body carries into a cell and that its entry does not show: always the same
+  /// keys in the same order, at most kMostRemembered. A body that begins a trial may have NaN.
+  /// study_order tests whether a chain should know them. By default none.
+  [[nodiscard]] virtual std::vector<Remembered> remembered(const Body&) const { return {}; }
   /// Continues the body with other noise from now on. The carried state stays.
   virtual void fork(Body& body, const Random& random) const { body.random = random; }
   /// Whether lay_noise() has an effect.

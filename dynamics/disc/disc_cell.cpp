@@ -77,6 +77,12 @@ void DiscCell::begin_at(Body& body, const BodyState& start) const {
 
 void DiscCell::forget(Body& body) const { body.carried.as<Memory>().force.drop_hold(); }
 
+std::vector<Cell::Remembered> DiscCell::remembered(const Body& body) const {
+  const RandomForce& force = body.carried.as<Memory>().force;
+  return {{.key = "held_draw", .value = force.last_draw(), .odd = true},
+          {.key = "held_for_s", .value = std::max(0.0, force.left())}};
+}
+
 void DiscCell::fork(Body& body, const Random& random) const {
   body.carried.as<Memory>().force.go_on_with(random);
 }

@@ -40,6 +40,8 @@ class DiscCell : public Cell {
   void begin_at(Body& body, const BodyState& start) const;
   /// Drops the rest of the current draw; the next draw of the same sequence begins now.
   void forget(Body& body) const override;
+  /// The random force's current draw (in its standard deviations) and how long it still holds.
+  [[nodiscard]] std::vector<Remembered> remembered(const Body& body) const override;
   /// Keeps the current draw until its end; later draws come from another sequence.
   void fork(Body& body, const Random& random) const override;
   [[nodiscard]] bool lays_noise() const override { return true; }

@@ -38,6 +38,8 @@ class RandomForce {
     return value_;
   }
   [[nodiscard]] double left() const { return left_; }
+  /// The last draw, in units of the force's standard deviation; 0 before the first.
+  [[nodiscard]] double last_draw() const { return sign_ * normal_; }
   void pass(double seconds) { left_ -= seconds; }
   /// Keeps the current draw until its end; later draws come from another sequence.
   void go_on_with(Random random) {

@@ -18,7 +18,7 @@
 #include "lattice/pool/kernel.h"
 #include "lattice/pool/remembered.h"
 #include "lattice/statistics/group_spread.h"
-#include "lattice/study/trials.h"
+#include "lattice/study/next_face.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -26,75 +26,9 @@ namespace {
 using namespace dynamics;
 
 constexpr std::uint64_t kFolding = 0x6f726465'72000001, kDrawing = 0x6f726465'72000002,
-                        kShuffling = 0x6f726465'72000003;  // "order"
+                        kShuffling = 0x6f726465'72000003,
+                        kLending = 0x6f726465'72000004;  // "order"
 constexpr std::size_t kFolds = 10;
-
-/// A passage with a known outcome: a face, or the number of faces for being trapped.
-struct Step {
-  std::int32_t body = 0;
-  int type = 0;
-  Entry entry{};
-  int outcome = 0;
-  std::vector<int> letters{};  // of the passages before, the latest at the end; at most `most`
-  std::size_t number = 0;      // of the passage; that of its mirror image too
-  bool is_image = false;
-};
-
-/// The passages of all bodies, and the mirror images of those through symmetric cells.
-struct Steps {
-  std::vector<Step> seen, images;
-};
-
-Steps steps_of(const CellMap& map, const RunPool& pool, const Letters& letters, int most) {
-  const Section& section = map.section;
-  const auto faces = static_cast<int>(section.faces.size());
-  const bool images = letters.of != LettersOf::states;
-  Steps steps;
-  const FieldTrials& trials = pool.scattered.each;
-  for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-    std::vector<int> before;
-    Entry entry = pool.scattered.starts[i];
-    for (const CellPassage passage : trials.of_trial(i)) {
-      if (passage.fate == Fate::broken) break;
-      const bool left = passage.fate == Fate::left;
-      const Step& step = steps.seen.emplace_back(Step{trials.bodies[i], passage.type, entry,
-                                                      left ? passage.entry.face : faces, before,
-                                                      steps.seen.size()});
-      if (images && map.types[passage.type].symmetric) {
-        Step image = step;
-        image.is_image = true;
-        image.entry = mirrored(section, entry);
-        if (left) image.outcome = section.faces[static_cast<std::size_t>(step.outcome)].mirror;
-        for (int& letter : image.letters)
-          letter = letters.mirrors[static_cast<std::size_t>(letter)];
-        steps.images.push_back(std::move(image));
-      }
-      if (!left) break;
-      if (const int letter = letters.of_passage(passage.type, entry, passage.entry.face);
-          letter != kNoLetter)
-        before.push_back(letter);
-      if (std::ssize(before) > most) before.erase(before.begin());
-      entry = passage.entry;
-    }
-  }
-  return steps;
-}
-
-/// Where a step stands at one order: type, face, then the last letters. A body that has fewer
-/// letters stands nowhere.
-using Standing = std::vector<int>;
-std::optional<Standing> standing(const Step& step, int order) {
-  if (std::ssize(step.letters) < order) return {};
-  Standing at{step.type, step.entry.face};
-  at.insert(at.end(), step.letters.end() - order, step.letters.end());
-  return at;
-}
-/// The same with another letter as the earliest of them.
-std::optional<Standing> standing(const Step& step, int order, int earliest) {
-  auto at = standing(step, order);
-  if (at) (*at)[2] = earliest;
-  return at;
-}
 
 /// By passage: the earliest of its last `order` letters, shuffled among the passages that stand
 /// alike without it; kNoLetter for passages with fewer letters.
@@ -114,155 +48,168 @@ std::vector<int> shuffled_letters(const std::vector<Step>& seen, int order, Rand
   return letters;
 }
 
-/// Outcomes of the steps of one standing, by leaf of a tree of their entries.
-class OutcomesSeen {
- public:
-  OutcomesSeen(const Section& one_face, const std::vector<const Step*>& steps, int outcomes,
-               int per_leaf)
-      : outcomes_(outcomes) {
-    std::vector<int> leaf(steps.size(), 0);
-    if (std::ssize(steps) >= 2 * per_leaf) {
-      EntryTable entries(one_face);
-      for (const Step* step : steps) entries.push_back({0, step->entry.at});
-      space_.emplace(tree_space(one_face, entries, per_leaf, {}, &leaf));
-    }
-    counts_.assign(static_cast<std::size_t>((space_ ? space_->size() : 1) * outcomes), 0);
-    for (std::size_t i = 0; i < steps.size(); ++i)
-      ++counts_[static_cast<std::size_t>(leaf[i] * outcomes + steps[i]->outcome)];
-  }
-
-  /// How often the step's outcome was seen in its leaf, and how many outcomes were.
-  struct Seen {
-    int outcome = 0, all = 0;
-    /// The probability of the outcome, smoothed with what is known without this leaf.
-    [[nodiscard]] double smoothed(double weight, double before) const {
-      return (outcome + weight * before) / (all + weight);
-    }
-  };
-  [[nodiscard]] Seen in_leaf(const Step& step) const {
-    const int leaf = space_ ? space_->index_of({0, step.entry.at}).state : 0;
-    return seen(counts_.data() + static_cast<std::size_t>(leaf * outcomes_), step.outcome);
-  }
-  [[nodiscard]] Seen in_all_leaves(const Step& step) const {
-    Seen sum;
-    for (std::size_t leaf = 0; leaf < counts_.size(); leaf += static_cast<std::size_t>(outcomes_)) {
-      const Seen one = seen(counts_.data() + leaf, step.outcome);
-      sum.outcome += one.outcome;
-      sum.all += one.all;
-    }
-    return sum;
-  }
-
- private:
-  [[nodiscard]] Seen seen(const int* counts, int outcome) const {
-    return {counts[outcome], std::accumulate(counts, counts + outcomes_, 0)};
-  }
-
-  int outcomes_;
-  std::optional<StateSpace> space_{};  // none: a single leaf
-  std::vector<int> counts_;            // (leaves x outcomes)
-};
-
 /// By order: log likelihoods of a body's passages, by the chain of other bodies.
 using Scores = std::vector<std::vector<double>>;  // (orders x bodies)
 constexpr std::size_t kShuffles = 7;
 /// By order from 1, and shuffle: shuffled_letters().
 using Shuffled = std::vector<std::array<std::vector<int>, kShuffles>>;
 
-/// The weight of what is known without a leaf that predicts each training passage best from the
-/// others (leaving one out); `p` has the probabilities of the level before, and gets those of this.
-double best_weight(const std::vector<OutcomesSeen::Seen>& seen, std::vector<double>& p) {
-  double best = 0.0, most = -std::numeric_limits<double>::infinity();
-  const auto without_itself = [](OutcomesSeen::Seen s) {
-    return s.all > 0 ? OutcomesSeen::Seen{s.outcome - 1, s.all - 1} : s;
-  };
-  constexpr double kLeast = 0.5, kMost = 5000.0;
-  for (double weight = kLeast; weight < kMost; weight *= 2.0) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      sum += std::log(without_itself(seen[i]).smoothed(weight, p[i]));
-    if (sum > most) {
-      most = sum;
-      best = weight;
+/// Bodies of ten folds: the outcomes of those of one fold are predicted by the passages of the
+/// others.
+class Folds {
+ public:
+  /// `section`: shows the entries of `steps`; its coordinates from `remembered` on are numbers that
+  /// bodies remember and do not show.
+  Folds(const Steps& steps, const Letters& letters, const Section& section, std::size_t remembered,
+        std::vector<std::size_t> fold_of, int per_leaf)
+      : steps_(steps),
+        letters_(letters),
+        section_(section),
+        entry_(section),
+        numbers_(section),
+        remembered_(remembered),
+        fold_of_(std::move(fold_of)),
+        per_leaf_(per_leaf) {
+    for (Section* shown : {&entry_, &numbers_}) {
+      shown->faces.resize(1);
+      shown->faces.front().mirror = kNoMirror;
+      shown->faces.front().odd = 0;
+      shown->faces.front().usual.fill({0.0, 1.0});  // not used: every tree has entries
+    }
+    const auto first = numbers_.coordinates.begin() + static_cast<std::ptrdiff_t>(remembered);
+    numbers_.coordinates.erase(numbers_.coordinates.begin(), first);
+    entry_.coordinates.resize(remembered);
+  }
+
+  /// Adds the scores of one fold's bodies, by order from 0; `by_chance` (orders x shuffles x
+  /// bodies): of the same with the earliest letter shuffled. Each order smooths the leaves of its
+  /// trees with the order before, and order 0 with all entries of a type and face.
+  void score(std::size_t fold, const Shuffled& shuffled, Scores& scores, Scores& by_chance) const {
+    Chances chances = without_knowledge(fold);
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      const int order = static_cast<int>(k);
+      for (std::size_t shuffle = 0; order > 0 && shuffle < kShuffles; ++shuffle) {
+        const std::vector<int>& earliest = shuffled[k - 1][shuffle];
+        Chances chance = chances;
+        chance.learn(entries_at([&](const Step& step) {
+                       const int letter = earliest[step.number];
+                       return standing(step, order,
+                                       step.is_image && letter != kNoLetter
+                                           ? letters_.mirrors[static_cast<std::size_t>(letter)]
+                                           : letter);
+                     }),
+                     per_leaf_);
+        chance.add_to(by_chance[k * kShuffles + shuffle]);
+      }
+      learn(chances, order);
+      chances.add_to(scores[k]);
     }
   }
-  for (std::size_t i = 0; i < seen.size(); ++i) p[i] = without_itself(seen[i]).smoothed(best, p[i]);
-  return best;
-}
 
-/// The chances of the outcomes of some passages, and of those that they are learned from.
-struct Chances {
-  std::vector<const Step*> others, own;
-  std::vector<double> of_others, of_own;
+  /// Passages that lend one another their remembered numbers, by passage: shuffled among the
+  /// passages of one leaf of a chain of this order, so that they say as much of the entry.
+  [[nodiscard]] std::vector<std::size_t> lenders(int order, Random random) const {
+    const std::vector<Step>& seen = steps_.seen;
+    std::vector<const Step*> steps;
+    for (const Step& step : seen) steps.push_back(&step);
+    const std::vector<int> group =
+        groups_of(steps, entries_at([order](const Step& step) {
+                    return step.is_first ? std::nullopt : standing(step, order);
+                  }),
+                  per_leaf_);
+    std::map<int, std::vector<std::size_t>> alike;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (group[i] >= 0) alike[group[i]].push_back(i);
+    std::vector<std::size_t> lender(seen.size());
+    std::iota(lender.begin(), lender.end(), 0);
+    for (const auto& [_, members] : alike)
+      for (std::size_t i = members.size(); i > 1; --i)
+        std::swap(
+            lender[members[i - 1]],
+            lender[members[static_cast<std::size_t>(random.below(static_cast<std::int64_t>(i)))]]);
+    return lender;
+  }
 
-  /// Smooths the outcomes seen at each standing (nullopt: nowhere) with what was known before.
-  template <class StandingOf>
-  void learn(StandingOf standing_of, bool in_all_leaves, const Section& one_face, int outcomes,
-             int per_leaf) {
-    using Seen = OutcomesSeen::Seen;
-    std::map<Standing, std::vector<const Step*>> at;
-    for (const Step* step : others)
-      if (auto place = standing_of(*step)) at[*std::move(place)].push_back(step);
-    std::map<Standing, OutcomesSeen> seen;
-    for (const auto& [place, steps] : at)
-      seen.emplace(place, OutcomesSeen(one_face, steps, outcomes, per_leaf));
-    const auto of = [&](const Step& step) {
-      const auto place = standing_of(step);
-      const auto found = place ? seen.find(*place) : seen.end();
-      return found == seen.end() ? Seen{}
-             : in_all_leaves     ? found->second.in_all_leaves(step)
-                                 : found->second.in_leaf(step);
+  /// Adds the scores of one fold's bodies by a chain of this order and the numbers that they
+  /// remember; `by_chance` (shuffles x bodies): with those of their lenders.
+  void score_remembered(std::size_t fold, int order,
+                        const std::vector<std::vector<std::size_t>>& lenders,
+                        std::vector<double>& scores, Scores& by_chance) const {
+    Chances chances = without_knowledge(fold);
+    for (int k = 0; k <= order; ++k) learn(chances, k);
+    const auto add = [&](const std::vector<std::size_t>* lender, std::vector<double>& to) {
+      Chances knowing = chances;
+      const Shown numbers{numbers_,
+                          [&](const Step& step) {
+                            const Entry own =
+                                steps_.seen[lender ? (*lender)[step.number] : step.number].entry;
+                            return numbers_of(step.is_image ? mirrored(section_, own) : own);
+                          },
+                          [order](const Step& step) {
+                            return step.is_first ? std::nullopt : standing(step, order);
+                          }};
+      for (const int per_group : kPerGroup) knowing.learn_factors(numbers, per_group);
+      knowing.add_to(to);
     };
-    std::vector<Seen> of_each;
-    for (const Step* step : others) of_each.push_back(of(*step));
-    const double weight = best_weight(of_each, of_others);
-    for (std::size_t i = 0; i < own.size(); ++i)
-      of_own[i] = of(*own[i]).smoothed(weight, of_own[i]);
+    for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
+      add(&lenders[shuffle], by_chance[shuffle]);
+    add(nullptr, scores);
   }
-  void add_to(std::vector<double>& scores) const {
-    for (std::size_t i = 0; i < own.size(); ++i)
-      scores[static_cast<std::size_t>(own[i]->body)] += std::log(of_own[i]);
+
+ private:
+  /// Steps in a group of remembered numbers: first large groups, then smaller ones within.
+  static constexpr std::array<int, 3> kPerGroup{400, 100, 25};
+
+  [[nodiscard]] Chances without_knowledge(std::size_t fold) const {
+    std::vector<const Step*> own, others;
+    for (const std::vector<Step>* all : {&steps_.seen, &steps_.images})
+      for (const Step& step : *all)
+        if (fold_of_[static_cast<std::size_t>(step.body)] != fold)
+          others.push_back(&step);
+        else if (!step.is_image)
+          own.push_back(&step);
+    return {std::move(own), std::move(others), static_cast<int>(section_.faces.size()) + 1};
   }
+  [[nodiscard]] Shown entries_at(StandingOf at) const {
+    return {entry_, [](const Step& step) { return step.entry; }, std::move(at)};
+  }
+  void learn(Chances& chances, int order) const {
+    const Shown shown = entries_at([order](const Step& step) { return standing(step, order); });
+    if (order == 0) chances.learn(shown, 0);
+    chances.learn(shown, per_leaf_);
+  }
+  /// The remembered numbers of an entry, as the coordinates of another.
+  [[nodiscard]] Entry numbers_of(const Entry& entry) const {
+    Entry numbers;
+    std::copy(entry.at.begin() + static_cast<std::ptrdiff_t>(remembered_), entry.at.end(),
+              numbers.at.begin());
+    return numbers;
+  }
+
+  const Steps& steps_;
+  const Letters& letters_;
+  const Section& section_;
+  Section entry_, numbers_;  // of one face: what an entry shows, what a body remembers
+  std::size_t remembered_;
+  std::vector<std::size_t> fold_of_;  // by body
+  int per_leaf_;
 };
 
-/// Adds the scores of the bodies of one fold; `by_chance` (orders x shuffles x bodies): of the same
-/// with the earliest letter shuffled. The levels are: all entries of a type and face, then the
-/// leaves of order 0, 1, ...
-void score_fold(const Steps& steps, const Shuffled& shuffled, const Letters& letters,
-                const std::vector<std::size_t>& fold_of, std::size_t fold, const Section& one_face,
-                int faces, const OrderOptions& options, Scores& scores, Scores& by_chance) {
-  const int outcomes = faces + 1;
-  Chances chances;
-  for (const std::vector<Step>* all : {&steps.seen, &steps.images})
-    for (const Step& step : *all)
-      if (fold_of[static_cast<std::size_t>(step.body)] != fold)
-        chances.others.push_back(&step);
-      else if (!step.is_image)
-        chances.own.push_back(&step);
-  chances.of_others.assign(chances.others.size(), 1.0 / outcomes);
-  chances.of_own.assign(chances.own.size(), 1.0 / outcomes);
-  for (int order = 0; order <= options.most; ++order) {
-    const auto k = static_cast<std::size_t>(order);
-    const auto learn = [&](Chances& of, const auto& standing_of, bool in_all_leaves = false) {
-      of.learn(standing_of, in_all_leaves, one_face, outcomes, options.per_leaf);
-    };
-    const auto as_seen = [&](const Step& step) { return standing(step, order); };
-    if (order == 0) learn(chances, as_seen, true);
-    for (std::size_t shuffle = 0; order > 0 && shuffle < kShuffles; ++shuffle) {
-      const std::vector<int>& earliest = shuffled[k - 1][shuffle];
-      Chances chance = chances;
-      learn(chance, [&](const Step& step) {
-        const int letter = earliest[step.number];
-        return standing(step, order,
-                        step.is_image && letter != kNoLetter
-                            ? letters.mirrors[static_cast<std::size_t>(letter)]
-                            : letter);
-      });
-      chance.add_to(by_chance[k * kShuffles + shuffle]);
+/// Subtracts from the scores (bodies) the mean of those by chance (kShuffles x bodies). Returns the
+/// variance of the sum over all bodies between shuffles.
+double beyond_chance(std::vector<double>& scores, const std::vector<double>* by_chance) {
+  std::array<double, kShuffles> sum{};
+  double mean = 0.0, variance = 0.0;
+  for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
+    for (std::size_t b = 0; b < scores.size(); ++b) {
+      const double chance = by_chance[shuffle][b];
+      sum[shuffle] += chance;
+      mean += chance / kShuffles;
+      scores[b] -= chance / kShuffles;
     }
-    learn(chances, as_seen);
-    chances.add_to(scores[k]);
-  }
+  for (const double x : sum)
+    variance += (x - mean) * (x - mean) / (kShuffles - 1) * (1.0 + 1.0 / kShuffles);
+  return variance;
 }
 
 /// Numbers 0 to 9 for the bodies, in random order.
@@ -329,7 +276,7 @@ int cells_of_most(const FieldTrials& trials) {
 }  // namespace
 
 OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderOptions& options,
-                       const Work& work) {
+                       const Work& work, const Remembering* remembering) {
   if (pool.bodies() < 2 * kLeastBodies)
     throw std::invalid_argument("validate: orders are compared with " +
                                 std::to_string(2 * kLeastBodies) + " bodies at least, these are " +
@@ -341,14 +288,14 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
       options.of == LettersOf::states
           ? std::make_shared<const StateSpace>(kernel_of(map, pool, options.per_leaf).space)
           : nullptr);
-  const Steps steps = steps_of(map, pool, letters, options.most);
+  const Steps steps = remembering
+                          ? steps_of(remembering->map, remembering->pool, letters, options.most)
+                          : steps_of(map, pool, letters, options.most);
   study.passages = std::ssize(steps.seen);
-  Section one_face = map.section;
-  one_face.faces.resize(1);
-  one_face.faces.front().mirror = kNoMirror;
-  one_face.faces.front().usual.fill({0.0, 1.0});  // not used: every standing has entries
   const auto bodies = static_cast<std::size_t>(pool.bodies());
-  const std::vector<std::size_t> fold_of = dealt_folds(bodies, options.seed);
+  const Section& shown = remembering ? remembering->map.section : map.section;
+  const Folds folds(steps, letters, shown, map.section.coordinates.size(),
+                    dealt_folds(bodies, options.seed), options.per_leaf);
   Shuffled shuffled(static_cast<std::size_t>(options.most));
   for (std::size_t k = 0; k < shuffled.size(); ++k)
     for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
@@ -358,24 +305,13 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
   Scores scores(static_cast<std::size_t>(options.most) + 1, std::vector<double>(bodies, 0.0)),
       by_chance(scores.size() * kShuffles, scores.front());
   tbb::parallel_for(std::size_t{0}, kFolds, [&](std::size_t fold) {  // each has bodies of its own
-    score_fold(steps, shuffled, letters, fold_of, fold, one_face,
-               static_cast<int>(map.section.faces.size()), options, scores, by_chance);
+    folds.score(fold, shuffled, scores, by_chance);
   });
   // What each letter adds beyond a shuffled one, and the variance of that sum between shuffles.
   std::vector<double> variance(scores.size(), 0.0);
   for (std::size_t k = 1; k < scores.size(); ++k) {
-    std::array<double, kShuffles> sum{};
-    double mean = 0.0;
-    for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
-      for (std::size_t b = 0; b < bodies; ++b) {
-        const double chance = by_chance[k * kShuffles + shuffle][b];
-        sum[shuffle] += chance;
-        mean += chance / kShuffles;
-        scores[k][b] -= chance / kShuffles;
-      }
+    variance[k] = beyond_chance(scores[k], &by_chance[k * kShuffles]);
     for (std::size_t b = 0; b < bodies; ++b) scores[k][b] += scores[k - 1][b];
-    for (const double x : sum)
-      variance[k] += (x - mean) * (x - mean) / (kShuffles - 1) * (1.0 + 1.0 / kShuffles);
   }
   scores.erase(scores.begin(), scores.begin() + options.least);
   variance.erase(variance.begin(), variance.begin() + options.least);
@@ -395,9 +331,12 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
                                        0.0));
   }
   const auto intervals = simultaneous_95(gains, of_gains, options.seed);
+  study.max_gates =
+      problem.field.max_gates > 0 ? problem.field.max_gates : cells_of_most(pool.scattered.each);
+  const CrossValidationOptions how{
+      .null_draws = {}, .seed = options.seed, .per_leaf = options.per_leaf};
   Problem compared = problem;
-  if (compared.field.max_gates == 0) compared.field.max_gates = cells_of_most(pool.scattered.each);
-  study.max_gates = compared.field.max_gates;
+  compared.field.max_gates = study.max_gates;
   study.chosen = study.best;
   for (std::size_t k = 0; k < scores.size(); ++k) {
     work.tell("orders", static_cast<std::int64_t>(k), std::ssize(scores));
@@ -407,34 +346,36 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
     a.gain_to_best = std::expm1((sums[study.best] - sums[k]) / n);
     for (std::size_t side : {0, 1}) a.interval[side] = std::expm1(intervals[k][side] / n);
     if (a.is_enough() && k < study.chosen) study.chosen = k;
-    const CrossValidationOptions how{
-        .null_draws = {}, .seed = options.seed, .per_leaf = options.per_leaf};
     if (a.order == 0) {
       a.words = 1;
       if (options.with_halves) a.halves = cross_validate(compared, pool, how);
       continue;
     }
-    Problem remembering = compared;
+    Problem with = compared;
     const ChosenWords chosen = words_of(letters, pool, a.order, options.per_leaf);
-    remembering.cells.map = with_words(map, chosen.words);
+    with.cells.map = with_words(map, chosen.words);
     a.words = chosen.words->size();
     a.left_out = chosen.left_out;
-    if (options.with_halves)
-      a.halves = cross_validate(remembering, with_words(pool, remembering.map()), how);
+    if (options.with_halves) a.halves = cross_validate(with, with_words(pool, with.map()), how);
   }
+  if (!remembering) return study;
+  const int order = study.answer().order;
+  std::vector<std::vector<std::size_t>> lenders;
+  for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
+    lenders.push_back(
+        folds.lenders(order, Random(Purpose::comparison, {options.seed, kLending, shuffle})));
+  Scores knowing(1, std::vector<double>(bodies, 0.0)), lent(kShuffles, knowing.front());
+  tbb::parallel_for(std::size_t{0}, kFolds, [&](std::size_t fold) {
+    folds.score_remembered(fold, order, lenders, knowing.front(), lent);
+  });
+  const double between = beyond_chance(knowing.front(), lent.data());
+  const double gained = std::accumulate(knowing.front().begin(), knowing.front().end(), 0.0);
+  const auto interval = simultaneous_95(knowing, {between}, options.seed).front();
+  RememberedAnswer& numbers = study.remembered.emplace();
+  numbers.keys = remembering->keys;
+  numbers.gain = std::expm1(gained / n);
+  for (std::size_t side : {0, 1}) numbers.interval[side] = std::expm1(interval[side] / n);
   return study;
-}
-
-RunPool simulated_bodies(const Problem& problem, std::int64_t trials, std::uint64_t seed,
-                         const Work& work) {
-  RunPool pool;
-  static_cast<void>(field_trials(
-      problem, {0, trials}, seed, work,
-      [&](const FieldTrials& each) { pool.scattered.each.append(each); }, true));
-  pool.scattered.starts.assign(pool.scattered.each.passed.size(), problem.start);
-  for (std::int32_t body = 0; body < std::ssize(pool.scattered.starts); ++body)
-    pool.scattered.each.bodies.push_back(body);
-  return pool;
 }
 
 }  // namespace gatewalk::lattice

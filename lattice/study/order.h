@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "dynamics/base/work.h"
@@ -13,6 +15,7 @@
 #include "lattice/field/problem.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/study/cross_validation.h"
+#include "lattice/study/remembering.h"
 
 namespace gatewalk::lattice {
 
@@ -43,6 +46,17 @@ struct OrderAnswer {
   [[nodiscard]] bool is_enough() const { return interval[0] <= 0.0; }
 };
 
+/// What a chain would gain that knew the numbers that bodies remember (Cell::remembered), above one
+/// of the chosen order.
+struct RememberedAnswer {
+  std::vector<std::string> keys;  // of the numbers
+  /// By how much the likelihood would be larger, as a share of it, with a 95 % interval.
+  double gain = 0.0;
+  std::array<double, 2> interval{};
+  /// Whether the chain is known to forget something that matters.
+  [[nodiscard]] bool matters() const { return interval[0] > 0.0; }
+};
+
 struct OrderStudy {
   dynamics::LettersOf of = dynamics::LettersOf::turns;
   std::vector<OrderAnswer> orders;
@@ -52,6 +66,7 @@ struct OrderStudy {
   /// The halves are compared after this number of cells: that of the field, or, where the field has
   /// no limit, the number that nine of ten trials pass.
   int max_gates = 0;
+  std::optional<RememberedAnswer> remembered{};  // empty: bodies remember no numbers
 
   [[nodiscard]] const OrderAnswer& answer() const { return orders[chosen]; }
   /// Whether the largest order that was tried may be too small.
@@ -59,20 +74,17 @@ struct OrderStudy {
 };
 
 /// Compares the orders by ten-fold cross-validation over bodies. The probability of an outcome in
-/// the leaf of an order is smoothed with that of the order before (a hierarchical Dirichlet model;
-/// MacKay and Peto, Nat. Lang. Eng. 1, 1995); the weight of each order is the one that predicts the
-/// passages of the chain's own bodies best from their others (leaving one out). What a letter adds
-/// is the gain over letters that are shuffled among passages alike but for it: even without memory,
-/// a second tree of the same entries predicts better than one. The intervals
-/// of the differences to the best order are simultaneous, by draws of bodies with replacement and
-/// the spread between seven shuffles.
-/// Chosen is the least order whose interval contains 0. Throws std::invalid_argument for fewer
-/// than 2 kLeastBodies bodies, and as cross_validate.
+/// the leaf of an order is smoothed with that of the order before (Chances::learn). What a letter
+/// adds is the gain over letters that are shuffled among passages alike but for it: even without
+/// memory, a second tree of the same entries predicts better than one. The intervals of the
+/// differences to the best order are simultaneous, by draws of bodies with replacement and the
+/// spread between seven shuffles. Chosen is the least order whose interval contains 0. Throws
+/// std::invalid_argument for fewer than 2 kLeastBodies bodies, and as cross_validate.
+///
+/// `remembering`: the same bodies with what they remember. What they would gain by it is found as
+/// for a letter: against the same numbers shuffled among the passages of a leaf.
 [[nodiscard]] OrderStudy study_order(const Problem& problem, const RunPool& pool,
-                                     const OrderOptions& options, const dynamics::Work& work = {});
-
-/// Trials of a problem that can be simulated, each by a body of its own.
-[[nodiscard]] RunPool simulated_bodies(const Problem& problem, std::int64_t trials,
-                                       std::uint64_t seed, const dynamics::Work& work = {});
+                                     const OrderOptions& options, const dynamics::Work& work = {},
+                                     const Remembering* remembering = nullptr);
 
 }  // namespace gatewalk::lattice

@@ -330,6 +330,16 @@ TEST(ProgramCell, FirstLinesThatSayNoCell) {
           "section: face W is not the mirror image of W");
   refused(hello(s, t, up + "," + up), "section: two faces are named S");
   refused(hello(s, t, up, R"(, "symmetric": 1)"), "it: 'symmetric' must be true or false");
+  const auto remembers = [&](const std::string& keys) {
+    return hello(s, t, up, R"(, "remembered": [)" + keys + "]");
+  };
+  refused(remembers(R"({"key": "a", "odd": 1})"),
+          "remembered number 1: 'odd' must be true or false");
+  refused(remembers(R"({"key": "a"}, {"key": "a"})"),
+          "remembered number 2: 'a' is the name of another number");
+  refused(remembers(R"({"key": "s"})"), "remembered number 1: 's' is the name of another number");
+  refused(remembers(R"({"key": "a"}, {"key": "b"}, {"key": "c"}, {"key": "d"}, {"key": "e"})"),
+          "'remembered' must be at most 4 numbers, and 8 together with 'coordinates'");
   refused(hello(s, t, up, R"(, "normals": -1)"),
           "it: 'normals' must be a whole number from 0 to 10000");
   refused(hello(s, t, up, R"(, "normals": 1, "uniforms": 1)"),

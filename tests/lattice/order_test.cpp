@@ -369,6 +369,64 @@ TEST(Order, ComparesHalvesAsCrossValidationDoes) {
   EXPECT_EQ(again.orders[1].interval, study.orders[1].interval);
 }
 
+/// A cell that a body leaves to the right with a chance that grows with the number it carries,
+/// drawn anew in each cell, and with its place; `kept`: whether the number tells that chance.
+class CarryingCell : public Cell {
+ public:
+  explicit CarryingCell(double effect) : effect_(effect) {
+    section_ = cells().map.section;
+    section_.coordinates.front().scale = 0.3;
+  }
+  [[nodiscard]] const Section& section() const override { return section_; }
+  void begin(Body& body) const override { body.carried.put(body.random.uniform() - 0.5); }
+  [[nodiscard]] std::vector<Remembered> remembered(const Body& body) const override {
+    return {{.key = "grip", .value = body.carried.as<double>()}};
+  }
+  [[nodiscard]] Passage pass(Body& body) const override {
+    const double grip = body.carried.as<double>(), place = body.entry.at[0];
+    const double right = 0.5 + 0.5 * place + effect_ * grip;
+    const int turn = body.random.uniform() < right ? kTurnRight : kTurnLeft;
+    const double next_grip = body.random.uniform() - 0.5;
+    body.entry = {face_after(body.entry.face, turn),
+                  {0.5 * next_grip + 0.5 * (body.random.uniform() - 0.5)}};
+    body.carried.put(next_grip);
+    return {Fate::left, body.entry, {1.0}};
+  }
+
+ private:
+  Section section_;
+  double effect_;
+};
+
+TEST(Order, TellsWhetherAChainForgetsWhatBodiesCarry) {
+  const auto answer = [](double effect, std::uint64_t seed) {
+    const Problem problem{.cells = CellField::uniform(std::make_shared<CarryingCell>(effect)),
+                          .field = cells().field,
+                          .start = {},
+                          .types = {},
+                          .source = {},
+                          .check = {}};
+    const auto bodies = remembering_bodies(problem, 400, seed);
+    const RunPool seen = bodies->seen_in(problem);
+    // The trials are those of bodies whose memory nobody reads.
+    const RunPool plain = simulated_bodies(problem, 400, seed);
+    EXPECT_EQ(seen.scattered.each.passed, plain.scattered.each.passed);
+    EXPECT_EQ(seen.scattered.each.passages[17].entry, plain.scattered.each.passages[17].entry);
+    const OrderOptions how{.least = 0, .most = 1, .seed = seed, .with_halves = false};
+    const OrderStudy study = study_order(problem, seen, how, {}, &*bodies);
+    EXPECT_EQ(study.orders[1].likelihood, study_order(problem, plain, how).orders[1].likelihood);
+    return *study.remembered;
+  };
+  EXPECT_EQ(answer(0.4, 1).keys, std::vector<std::string>{"grip"});
+  int found = 0, alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    found += answer(0.4, seed).matters();
+    alarms += answer(0.0, seed).matters();
+  }
+  EXPECT_GE(found, 18);
+  EXPECT_LE(alarms, 3);  // 2.5 % of them
+}
+
 TEST(Order, NeedsBodies) {
   const RunPool pool = agents(cells(), without_memory, 20, 10, 6);
   EXPECT_THROW((void)study_order(problem_of(cells(), pool), pool, {}), std::invalid_argument);

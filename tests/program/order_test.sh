@@ -95,6 +95,39 @@ expect 0 '^Memory: the state alone does not say all' "$gatewalk" validate plain.
 expect 0 'transition matrix' "$gatewalk" build walker.csv --cell walker_cell.toml --order 1 -o walker.nc
 expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/field.toml" --order 0:1
 
+# Numbers that bodies carry: of the disc its force; of a program those with which its memory begins. This body turns
+# right with probability 0.5 + grip / 2, and grips anew in each cell.
+expect 0 'need not know what bodies carry (held_draw, held_for_s)' "$gatewalk" validate "$scenes/walker.toml" --order 0:1 --json disc.json
+holds '.remembered.numbers == ["held_draw", "held_for_s"] and (.remembered.matters | not)' disc.json
+expect 0 'chain forgets what bodies carry (held_draw, held_for_s): with it a passage would be .* more' "$gatewalk" validate "$scenes/field.toml" \
+  --set forces.random_rate_Hz=1 --set forces.random_N=8 --order 0:1 --trials 400
+cat >grip.py <<'END'
+import sys
+key = sys.argv[1]
+print('{"gatewalk": 1, "uniforms": 2, "coordinates": [{"name": "s", "unit": "m", "scale": 0.1}], "costs": [{"key": "time_s", "unit": "s"}],'
+      f' {key} "faces": [{{"name": "S", "move": [0, 1]}}, {{"name": "L", "move": [-1, 0]}}, {{"name": "R", "move": [1, 0]}}]}}', flush=True)
+for word in map(str.split, sys.stdin):
+    if not word:
+        sys.stdout.flush()
+        continue
+    number, face, s, seed, turns, grips, memory = word
+    grip = 0 if memory == "-" else float(memory.split(",")[0])
+    right = float(turns) < 0.5 + grip / 2
+    print(number, "left", "R" if right else "L", 0, 1, f"{float(grips) - 0.5},more" if len(sys.argv) < 3 else sys.argv[2])
+END
+cat >grip.toml <<'END'
+field = { columns = 9, rows = 3, max_gates = 12 }
+start = { face = "S", s_m = 0.0 }
+cell = { width_m = 1.0, length_m = 1.0, faces = [{ name = "S", move = [0, 1] }, { name = "L", move = [-1, 0] }, { name = "R", move = [1, 0] }], coordinates = [{ name = "s", unit = "m" }] }
+END
+grip() { "$gatewalk" validate grip.toml --cell-program "python3 grip.py '$1' ${2-}" --order 0:1 --trials 300 --json grip.json --force; }
+expect 0 'chain forgets what bodies carry (grip): with it' grip '"remembered": [{"key": "grip"}],'
+holds '.remembered.matters and .remembered.gain_95[0] > 0.02 and .order == 0' grip.json
+expect 0 'need not remember turns' grip ''
+holds '.remembered == null' grip.json
+expect 1 "memory: grip 'full' is not a finite number" grip '"remembered": [{"key": "grip"}],' full
+expect 1 "memory: slip '' is not a finite number" grip '"remembered": [{"key": "grip"}, {"key": "slip"}],' 0.5
+
 expect 2 'must be two whole numbers from 0 to 8' "$gatewalk" validate runs.csv --cell cell.toml --order 4
 expect 2 'the first one smaller' "$gatewalk" validate runs.csv --cell cell.toml --order 2:1
 expect 2 'must be turns, faces or states' "$gatewalk" validate runs.csv --cell cell.toml --order 0:2 --order-of steps
