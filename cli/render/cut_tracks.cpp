@@ -331,6 +331,23 @@ void add_borders(Rows& rows, const Span& span, const lattice::CellFile& cell, co
     rows.add(w * static_cast<double>(span.left), l * static_cast<double>(i), wide, 0);
 }
 
+/// Adds the walls of the cells in `span`, which lie inside the map: "x y dx dy".
+void add_walls(Rows& rows, const Span& span, const lattice::CellFile& cell, const Sized& metre) {
+  const double w = cell.width / metre.size, l = cell.length / metre.size;
+  const std::vector<dynamics::Face>& faces = cell.map.section.faces;
+  for (long row = span.bottom; row < span.top; ++row)
+    for (long column = span.left; column < span.right; ++column) {
+      const auto type = static_cast<std::size_t>(
+          cell.map.type_of(static_cast<int>(column), static_cast<int>(row)));
+      for (std::size_t f = 0; f < faces.size(); ++f)
+        if ((cell.walls[type] >> f & 1) != 0) {  // a body by this face comes from the other side
+          const double x = w * static_cast<double>(column + (faces[f].di_x < 0 ? 1 : 0)),
+                       y = l * static_cast<double>(row + (faces[f].di_y < 0 ? 1 : 0));
+          rows.add(x, y, faces[f].di_x == 0 ? w : 0.0, faces[f].di_y == 0 ? l : 0.0);
+        }
+    }
+}
+
 }  // namespace
 
 Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
@@ -369,6 +386,11 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
     Rows& borders = out.data("$borders");
     add_borders(borders, span.within(cut.columns, cut.rows), cell, metre);
     panel.draw(borders, "1:2:3:4", "vectors nohead", {"#999999", 0.6});
+  }
+  if (with_borders && cell.has_walls()) {
+    Rows& walls = out.data("$walls");
+    add_walls(walls, span.within(cut.columns, cut.rows), cell, metre);
+    panel.draw(walls, "1:2:3:4", "vectors nohead", {kInk, 1.6});
   }
   panel.draw(ways, "1:2", "lines", {kFirstColour, 0.7});
   double at = 8.0;

@@ -163,8 +163,11 @@ awk 'BEGIN {
   }
 }' >maze.csv
 maze=(maze.csv --columns body=body,time=t_s,x=x_m,y=y_m --fastest 5 --quiet)
-"$gatewalk" passages "${maze[@]}" --cell maze.toml -o maze_runs.csv --visits visits.csv --transitions moves.csv --json maze.json ||
-  fail "passages: a maze"
+"$gatewalk" passages "${maze[@]}" --cell maze.toml -o maze_runs.csv --visits visits.csv --transitions moves.csv --json maze.json \
+  --figure maze.svg || fail "passages: a maze"
+# The figure shows the wall, half the height of the panel.
+wall=$(sed -n '/\$walls using/,/gnuplot_plot_3a/s/.* d=.M\([0-9.]*\),[0-9.]* L\([0-9.]*\),[0-9.]* .*/\1 \2/p' maze.svg)
+[ "$(wc -l <<<"$wall")" = 1 ] && [ -n "$wall" ] && [ "${wall% *}" = "${wall#* }" ] || fail "passages: walls in the figure: $wall"
 holds '.passages == 4 and .lost_by.wall == 0 and .places_put_back > 3 and .left_by.N == 2' maze.json
 [ "$(cut -d, -f1-6,8 visits.csv | tail -n +2 | tr '\n' ' ')" = "m,1,0,0,left,S,S m,1,0,1,open,S,W m,1,1,1,open,W,N m,1,1,0,open,N,N " ] ||
   fail "passages: visits: $(cat visits.csv)"
