@@ -36,8 +36,8 @@ run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 run validate "$field" --bins paper --matrix-trials 20 --trials 200 --figure ../validate.svg
 "$gatewalk" sample observed -o observed.csv --quiet
 printf 'gate_x,gate_y,count\n0,0,20\n-1,1,25\n4,2,15\n' >gates.csv
-run validate "$field" --observed observed.csv --bins paper --matrix-trials 20 --figure ../validate_observed.svg
-run validate "$field" --observed gates.csv --bins paper --matrix-trials 20 --figure ../validate_gates.svg
+run validate "$field" --observed observed.csv --bins paper --matrix-trials 20 --null-draws 99 --figure ../validate_observed.svg
+run validate "$field" --observed gates.csv --bins paper --matrix-trials 20 --null-draws 99 --figure ../validate_gates.svg
 run analyze "$field" --set run.method=moreau --accuracy 0.05 --runs 300 --trials 2000 --target left_side --figure ../analyze.svg
 run analyze "$field" --set run.method=moreau --set field.columns=61 --set field.rows=40 --set field.max_gates=30 --accuracy 0.1 --runs 0 --figure ../analyze_large.svg
 # Which gate is of which type.
@@ -58,10 +58,10 @@ run design "${mixed[@]}" --set field.rows=3 --changes 2 --types s,. --accuracy 0
 printf 'ending,count\ncrossed,9\nleft side,3\nright side,2\ntrapped,40\ncut off,0\n' >counts.csv
 free=(--free forces.propulsion_N=5:9)
 for more in forces.random_N=20:60 beams.stiffness_left_Nm_per_rad=300:500 beams.stiffness_right_Nm_per_rad=300:500; do
-  run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials $((6144 * ${#free[@]})) --figure ../fit_${#free[@]}.svg
+  run fit "$field" counts.csv --set run.method=moreau --set field.rows=2 "${free[@]}" --trials $((6144 * ${#free[@]})) --figure ../fit_${#free[@]}.svg
   free+=(--free $more)
 done
-run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg
+run fit "$field" counts.csv --set run.method=moreau --set field.rows=2 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg
 run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --gate-runs 40000 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg

@@ -30,7 +30,7 @@ sample field -o field.toml
 sample mixed -o mixed.toml
 sample walker -o walker.toml
 """
-# {json}: the file that the result goes to.
+# Small fields, and short time limits where a method is chosen: the keys are those of the full ones.
 LINES = """
 sample
 sample walker
@@ -38,7 +38,7 @@ scene walker.toml
 scene mixed.toml
 scene field.toml --set actions.a.forces.propulsion_N=6 --set actions.b={}
 gate field.toml --trials 100
-gate field.toml --set run.method=auto --trials 50
+gate field.toml --set run.method=auto --set run.time_limit_s=2 --trials 50
 sweep field.toml --vary forces.propulsion_N=6,8 --trials 20
 trace field.toml --trials 2
 trace mixed.toml --field --trials 1
@@ -83,18 +83,18 @@ plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set a
 lattice field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 20
 trace field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 2
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --least work_J
-plan mixed.toml --set field.rows=2 --set run.method=auto --accuracy 0.2
+plan mixed.toml --set field.rows=2 --set run.method=auto --set run.time_limit_s=4 --accuracy 0.2
 plan field.toml --set field.rows=2 --over start.x_m=-5:5 --accuracy 0.2
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --robust
 design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
 design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
-fit field.toml observed.csv --set field.rows=4 --set run.method=auto --free forces.propulsion_N=5:9 --free forces.random_N=5:20 --trials 24576
+fit field.toml observed.csv --set field.rows=2 --set field.columns=3 --set run.method=auto --set run.time_limit_s=4 --free forces.propulsion_N=5:9 --free forces.random_N=5:20 --trials 24576
 validate field.toml --trials 50 --accuracy 0.2
 validate field.toml --trials 50 --bins paper
 validate field.toml --trials 50 --accuracy 0.2 --observed observed.csv
 validate passages.nc
-power field.toml --trials 20 --accuracy 0.2 --versus forces.propulsion_N=8
-power passages.nc --trials 20
+power field.toml --set field.rows=2 --set field.columns=3 --trials 20 --accuracy 0.2 --versus forces.propulsion_N=8
+power passages.nc --set field.rows=3 --set field.columns=3 --trials 20
 """
 # Those with a folder of results, in which their JSON stands.
 FOLDERS = {"landscape field.toml": "landscape.json", "landscape field.toml --trials 20": "landscape.json",

@@ -22,11 +22,9 @@ constexpr double kNever = ChainSummary::kNever;
 /// A truth with these numbers of trials per gate of a field of 3 x 3.
 FieldTruth truth_of(const std::array<std::int64_t, 9>& trials, double seconds_per_trial = 1.0) {
   FieldTally tally({.columns = 3, .rows = 3});
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    const auto n = static_cast<std::size_t>(trials[i]);
-    tally.count(std::vector(n, static_cast<std::int32_t>(i)),
-                std::vector(n, std::optional(markov::Ending::trapped)));
-  }
+  for (std::size_t i = 0; i < trials.size(); ++i) tally.final_cells.data()[i] = trials[i];
+  tally.trials = tally.final_cells.sum();
+  tally.endings[static_cast<std::size_t>(markov::Ending::trapped)] = tally.trials;
   return field_truth({0, {0.0, 0.0, 15.0}}, std::move(tally), seconds_per_trial);
 }
 

@@ -331,8 +331,8 @@ TEST(Letters, TurnsCountWhereACellHasThreeOpenSides) {
 TEST(Order, IsThatOfTheAgents) {
   const auto found = [&](const Law& law, LettersOf of, std::uint64_t seed) {
     const RunPool pool = agents(cells(), law, 50, 200, seed);
-    const OrderStudy study =
-        study_order(problem_of(cells(), pool), pool, {.of = of, .least = 0, .most = 3});
+    const OrderStudy study = study_order(problem_of(cells(), pool), pool,
+                                         {.of = of, .least = 0, .most = 3, .with_halves = false});
     return study.answer().order;
   };
   EXPECT_EQ(found(without_memory, LettersOf::turns, 11), 0);

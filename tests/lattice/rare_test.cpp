@@ -163,7 +163,8 @@ TEST(Splitting, CountsTheRowsAheadOfTheStart) {
   scene.field.start_row = 2;
   scene.field.own_start_column = 1;
   const Problem problem = problem_of(up_to_row(scene, 5));
-  const RareEvent e = rare_event(problem, {.row = 5, .accuracy = 0.1});
+  const RareEvent e = rare_event(problem, {.row = 5, .accuracy = 0.1, .most_runs = 100'000});
+  EXPECT_TRUE(e.splitting.reached);
   EXPECT_EQ(e.splitting.first_row, 3);
   ASSERT_EQ(e.splitting.rows.size(), 3u);
   ASSERT_EQ(e.chain.size(), 3u);

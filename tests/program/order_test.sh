@@ -93,7 +93,7 @@ expect 0 '^Memory: the state alone does not say all' "$gatewalk" validate plain.
 "$gatewalk" lattice "$scenes/walker.toml" --trials 60 --passages walker.csv --cell-file walker_cell.toml --quiet >/dev/null ||
   fail "lattice records no passages"
 expect 0 'transition matrix' "$gatewalk" build walker.csv --cell walker_cell.toml --order 1 -o walker.nc
-expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/field.toml" --order 0:1
+expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/field.toml" --set field.rows=4 --set field.columns=5 --order 0:1
 
 # Numbers that bodies carry: of the disc its force; of a program those with which its memory begins. This body turns
 # right with probability 0.5 + grip / 2, and grips anew in each cell.

@@ -30,7 +30,7 @@ divided() {
 field=("$scenes/field.toml" --set run.method=moreau --seed 5)
 divided 7 gate.json gate "${field[@]}" --trials 1000 --json gate.json
 divided 2 sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=5:1:8 --trials 90 --csv sweep.csv
-divided 3 sweep.json sweep "$scenes/single_gate.toml" --set run.method=auto --vary forces.propulsion_N=6,8 --trials 90 --json sweep.json
+divided 3 sweep.json sweep "$scenes/single_gate.toml" --set run.method=auto --set run.time_limit_s=2 --vary forces.propulsion_N=6,8 --trials 90 --json sweep.json
 divided 2 bins.nc build "${field[@]}" --bins paper --trials 20 -o bins.nc
 divided 3 bins.nc build "$scenes/mixed.toml" --set run.method=moreau --bins paper --trials 5 -o bins.nc
 divided 2 tree.nc build "${field[@]}" --bins tree --trials 400 -o tree.nc

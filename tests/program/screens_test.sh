@@ -72,7 +72,7 @@ screens validate field.toml --observed observed.csv --trials 1200 --accuracy 0.3
 screens analyze small.toml --accuracy 0.3 --runs 100
 screens analyze small.toml --accuracy 0.3 --runs 100 --trials 100 --lump 2,1,1
 screens analyze tree.nc --runs 0 --first-passage crossed
-screens analyze small.toml --accuracy 0.3 --runs 0 --over forces.propulsion_N=6:9 --over forces.random_N=40:60 --over-trials 8192
+screens analyze small.toml --accuracy 0.3 --runs 0 --over forces.propulsion_N=6:9 --over forces.random_N=40:60 --over-trials 4096
 screens analyze bins.nc --runs 0
 screens power small.toml --accuracy 0.3
 screens power small.toml --accuracy 0.3 --trials 60
@@ -83,7 +83,7 @@ screens plan small.toml --accuracy 0.2 "${actions[@]}" --policy policy.json
 screens plan small.toml --accuracy 0.2 "${actions[@]}" --least work_J
 screens design mixed.toml --set field.rows=2 --accuracy 0.2
 printf 'ending,count\ncrossed,20\ntrapped,30\nleft side,5\n' >ends.csv
-screens fit small.toml ends.csv --free forces.propulsion_N=6:9 --free forces.random_N=40:60 --trials 24576
+screens fit small.toml ends.csv --free forces.propulsion_N=6:9 --free forces.random_N=40:60 --trials 24576 --set field.rows=2 --set field.columns=3
 screens sweep fig8.toml --trials 3
 first 15 sweep single_gate.toml --trials 10 --vary forces.propulsion_N=6:1:9
 # One gate, single runs, tracks, scenes.
@@ -128,12 +128,15 @@ grep -q '^left side *0.00 %  -$' screen.txt && grep -q '^-: impossible' screen.t
 sort -u -t$'\t' -k1,1 next.txt >all.txt
 [ "$(wc -l <all.txt)" -ge 15 ] || fail "few lines of advice: $(cat all.txt)"
 gatewalk() {
+  local rough=()
+  case " $* " in *' --accuracy '* | *.nc' '*) ;; *) rough=(--accuracy 0.3) ;; esac
   case $1 in
-    analyze) set -- "$@" --runs 0 --json advised.json ;;
+    analyze) set -- "$@" --runs 0 --json advised.json "${rough[@]}" ;;
     plan | power) set -- "$@" --accuracy 0.3 ;;
     sweep) set -- "$@" --trials 3 ;;
     validate) set -- "$@" --null-draws 99 --json advised.json ;;
-    predict | rare | lattice) set -- "$@" --json advised.json ;;
+    predict) set -- "$@" --json advised.json "${rough[@]}" ;;
+    rare | lattice) set -- "$@" --json advised.json ;;
   esac
   command "$program" "$@" --force
 }
