@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes DIR/summary.csv from DIR/assumptions.csv: by kind of fault and error, how often an assumption is said to be
-wrong, how often the right one, and how often the chain's own trials show the fault."""
+wrong, how often the right one, how often the chain's own trials show the fault, and how often either does."""
 import csv, sys
 from collections import defaultdict
 from pathlib import Path
@@ -22,10 +22,10 @@ for row in csv.DictReader((OUT / "assumptions.csv").open()):
             table["any fault", "0.02 to 0.06"].append(row)
 with open(OUT / "summary.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
-    out.writerow(["how", "error", "chains", "found", "cause_right", "own_trials"])
+    out.writerow(["how", "error", "chains", "found", "cause_right", "own_trials", "by_either"])
     for key in sorted(table):
         rows = table[key]
         found = [r for r in rows if r["wrong"] != "none"]
         right = [r for r in found if r["wrong"] in CAUSES[r["how"]]]
         own = [r for r in rows if 0.0 <= float(r["own_p"]) <= 0.01]
-        out.writerow([*key, len(rows), len(found), len(right), len(own)])
+        out.writerow([*key, len(rows), len(found), len(right), len(own), sum(r in found or r in own for r in rows)])

@@ -20,6 +20,11 @@ holds '.markov | .walks == 600 and (.verdict | test("chain forgets")) and ([.gat
 holds '[.starts[] | has("force_memory")] | any | not' ends-validate.json
 grep -q '^Is it Markov? Four tests' ends-validate.txt && grep -q '^  The gate before (p [=<] ' ends-validate.txt || fail "validate: does not say whether it is Markov"
 expect 0 'drawn anew at every crossing' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 30 --start 0,0,15 --memory --null-draws 99 --details
+# A force that holds for a second is a memory; what it does to the final gates is the check's own number.
+expect 0 '^Is it Markov? No' "$gatewalk" validate "$scenes/field.toml" --set forces.random_rate_Hz=1 --set forces.random_N=8 \
+  --trials 1000 --accuracy 0.05 --json held.json
+said=$(sed -n 's/^With the face before in the state the final gates differ by a total variation of \([0-9.]*\); chance makes up$/\1/p' out.txt)
+holds "(.state_space.assumptions.face_before.total_variation - ${said:-9} | fabs) <= 0.0005" held.json
 # A tree's gate runs are those that were simulated, without the mirror images in its rows.
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.1 -o tree.nc --quiet >/dev/null
 "$gatewalk" show tree.nc --json tree.json --quiet
