@@ -179,8 +179,8 @@ void describe_order(Fields& out, const OrderResult& result) {
              });
   out.count({"passages", "1", "passages with a known outcome"}, study.passages);
   out.count({"max_gates", "1",
-             "number of cells after which the halves are compared: field.max_gates, or what nine "
-             "of ten trials pass"},
+             "number of cells after which the halves are compared, 0: at the end of every trial; "
+             "field.max_gates, or, of trials not seen to their ends, what nine of ten trials pass"},
             study.max_gates);
   out.text({"verdict", "what the chain must remember, in words"},
            study.orders.empty() ? "" : verdict(study));
@@ -188,8 +188,8 @@ void describe_order(Fields& out, const OrderResult& result) {
 
 std::string answer_text(const OrderResult& result) {
   const OrderStudy& study = result.study;
-  std::string text = wrapped(verdict(study)) + wrapped(remembered_text(study)) +
-                     wrapped(what_is_left(study));
+  std::string text =
+      wrapped(verdict(study)) + wrapped(remembered_text(study)) + wrapped(what_is_left(study));
   TextTable table({{"Order", 5},
                    {"likelihood", 12, 4},
                    {"best order more likely by, 95 %", 34},
@@ -205,8 +205,10 @@ std::string answer_text(const OrderResult& result) {
                mean_total_variation(a), mean_of_halves(a, &Fold::chance_total_variation),
                mean_of_halves(a, &Fold::chance_total_variation_95)});
   text += table.text();
-  text += fmt::format("Halves: where bodies are after {} cells or where they ended before.\n",
-                      study.max_gates);
+  text += study.max_gates == 0
+              ? "Halves: where bodies ended.\n"
+              : fmt::format("Halves: where bodies are after {} cells or where they ended before.\n",
+                            study.max_gates);
   if (result.is_recorded) return text + table_of(result.recorded);
   return text +
          fmt::format("{} simulated trials, {} passages.\n", result.recorded.trials, study.passages);

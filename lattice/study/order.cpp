@@ -331,8 +331,10 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
                                        0.0));
   }
   const auto intervals = simultaneous_95(gains, of_gains, options.seed);
-  study.max_gates =
-      problem.field.max_gates > 0 ? problem.field.max_gates : cells_of_most(pool.scattered.each);
+  study.max_gates = problem.field.max_gates;
+  if (const FieldTrials& each = pool.scattered.each;
+      study.max_gates == 0 && each.endings.size() < each.passed.size())  // not seen to their ends
+    study.max_gates = cells_of_most(each);
   const CrossValidationOptions how{
       .null_draws = {}, .seed = options.seed, .per_leaf = options.per_leaf};
   Problem compared = problem;

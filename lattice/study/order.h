@@ -63,8 +63,9 @@ struct OrderStudy {
   std::size_t best = 0;                   // index of the order with the largest likelihood
   std::size_t chosen = 0;                 // index of the least order that is enough
   std::int64_t bodies = 0, passages = 0;  // passages with a known outcome
-  /// The halves are compared after this number of cells: that of the field, or, where the field has
-  /// no limit, the number that nine of ten trials pass.
+  /// The halves are compared after this number of cells: that of the field (0: at the end of every
+  /// trial); if the field has no limit and not all trials were seen to their ends, the number that
+  /// nine of ten trials pass.
   int max_gates = 0;
   std::optional<RememberedAnswer> remembered{};  // empty: bodies remember no numbers
 

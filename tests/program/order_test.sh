@@ -98,7 +98,7 @@ expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/fiel
 # Numbers that bodies carry: of the disc its force; of a program those with which its memory begins. This body turns
 # right with probability 0.5 + grip / 2, and grips anew in each cell.
 expect 0 'need not know what bodies carry (held_draw, held_for_s)' "$gatewalk" validate "$scenes/walker.toml" --order 0:1 --json disc.json
-holds '.remembered.numbers == ["held_draw", "held_for_s"] and (.remembered.matters | not)' disc.json
+holds '.remembered.numbers == ["held_draw", "held_for_s"] and (.remembered.matters | not) and .max_gates == 0' disc.json
 expect 0 'chain forgets what bodies carry (held_draw, held_for_s): with it a passage would be .* more' "$gatewalk" validate "$scenes/field.toml" \
   --set forces.random_rate_Hz=1 --set forces.random_N=8 --order 0:1 --trials 400
 cat >grip.py <<'END'
