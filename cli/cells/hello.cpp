@@ -192,18 +192,20 @@ std::vector<dynamics::Cell::Remembered> read_remembered(const Json& list,
                                                         const dynamics::Section& section) {
   std::vector<dynamics::Cell::Remembered> remembered;
   std::vector<std::string> names;
-  for (const dynamics::Coordinate& c : section.coordinates) names.push_back(c.name);
+  for (const dynamics::Coordinate& c : section.coordinates)
+    names.insert(names.end(), {c.name, c.key});
   for (const Json& one : list) {
     const std::string where = fmt::format("remembered number {}", remembered.size() + 1);
     const HelloTable table(one, where, {"key", "odd"});
-    remembered.push_back({.key = table.word("key"), .odd = table.flag("odd")});
-    if (std::find(names.begin(), names.end(), remembered.back().key) != names.end())
-      refuse_hello(fmt::format("{}: '{}' is the name of another number", where,
-                               excerpt(remembered.back().key, 60)));
-    names.push_back(remembered.back().key);
+    const std::string key = table.word("key");
+    if (key.find(',') != key.npos) table.refuse_value("key", "a word without commas");
+    if (std::find(names.begin(), names.end(), key) != names.end())
+      refuse_hello(fmt::format("{}: '{}' is the name of another number", where, excerpt(key, 60)));
+    remembered.push_back({.key = key, .odd = table.flag("odd")});
+    names.push_back(key);
   }
   if (remembered.size() > dynamics::Cell::kMostRemembered ||
-      names.size() > dynamics::kMostCoordinates)
+      section.coordinates.size() + remembered.size() > dynamics::kMostCoordinates)
     refuse_hello(
         fmt::format("'remembered' must be at most {} numbers, and {} together with 'coordinates'",
                     dynamics::Cell::kMostRemembered, dynamics::kMostCoordinates));

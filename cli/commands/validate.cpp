@@ -66,7 +66,7 @@ struct ValidateCommand : Options {
       "order", "LOW:HIGH",
       "what must the chain remember? Compares chains that remember LOW to HIGH turns (or what "
       "--order-of says), by how well they predict other bodies; of a scene, 1000 trials or "
-      "--trials");
+      "--trials, and whether the chain should know the numbers that bodies carry");
   TextOption order_of = add_order_of(*this);
   TextOption cell_file =
       input_file("cell",

@@ -34,8 +34,12 @@ std::string letters(const OrderStudy& study, int order) {
   return std::to_string(order) + " " + name;
 }
 
-/// A share in percent with two significant digits.
-std::string percent_of(double share) { return digits(100.0 * share, 2) + " %"; }
+/// A share in percent with two significant digits or more; 0 for what rounding made.
+std::string percent_of(double share) {
+  constexpr double kRounding = 1e-9;
+  const double percent = std::abs(share) < kRounding ? 0.0 : 100.0 * share;
+  return (std::abs(percent) < 100.0 ? digits(percent, 2) : fixed(percent, 0)) + " %";
+}
 
 /// The mean over both halves.
 double mean_of_halves(const OrderAnswer& a, double Fold::*number) {
@@ -64,20 +68,25 @@ std::string verdict(const OrderStudy& study) {
   return text;
 }
 
-/// What the numbers that bodies remember would add to the chain; empty: they remember none.
+/// Whether the chain should know the numbers that bodies remember; empty: they remember none.
 std::string remembered_text(const OrderStudy& study) {
   if (!study.remembered) return "";
   const lattice::RememberedAnswer& a = *study.remembered;
-  const std::string keys = fmt::format("{}", fmt::join(a.keys, ", "));
+  const std::string keys = fmt::format("what bodies carry ({})", fmt::join(a.keys, ", "));
+  if (a.passages == 0)
+    return fmt::format(
+        "Whether the chain should know {} cannot be told: it does not vary, or too "
+        "few passages are alike.",
+        keys);
+  const std::string interval =
+      fmt::format("[{}, {}]", percent_of(a.interval[0]), percent_of(a.interval[1]));
   return a.matters()
-             ? fmt::format(
-                   "The chain forgets what bodies carry ({}): with it a passage would be {} "
-                   "more likely [{}, {}].",
-                   keys, percent_of(a.gain), percent_of(a.interval[0]), percent_of(a.interval[1]))
+             ? fmt::format("The chain forgets {}: knowing it made a passage {} more likely {}.",
+                           keys, percent_of(a.gain), interval)
              : fmt::format(
-                   "The chain need not know what bodies carry ({}): a passage would become "
-                   "at most {} more likely.",
-                   keys, percent_of(std::max(0.0, a.interval[1])));
+                   "{} bodies do not show that the chain should know {}: it changed the "
+                   "likelihood of a passage by {} {}.",
+                   study.bodies, keys, percent_of(a.gain), interval);
 }
 
 /// Whether bodies do what the chain of that order says, with the caution that few bodies need.
@@ -172,9 +181,16 @@ void describe_order(Fields& out, const OrderResult& result) {
                    "entries do not show"),
              study.remembered, [](Fields& f, const lattice::RememberedAnswer& a) {
                f.texts({"numbers", "their keys"}, a.keys);
-               f.estimate(Field("gain", "1", "by which share the likelihood would be larger")
-                              .bounded_by("95 % interval of gain, by draws of bodies"),
-                          a.gain, known(a.interval));
+               f.count({"passages", "1",
+                        "passages whose numbers could tell something; 0: nothing else is known"},
+                       a.passages);
+               const bool is_known = a.passages > 0;
+               f.estimate(
+                   Field("gain", "1",
+                         "by which share knowing them made such a passage more likely, for chains "
+                         "learned from nine tenths of these bodies")
+                       .bounded_by("95 % interval of gain, by draws of bodies"),
+                   is_known ? a.gain : kUnknown, is_known ? known(a.interval) : std::nullopt);
                f.flag({"matters", "whether the chain forgets something that matters"}, a.matters());
              });
   out.count({"passages", "1", "passages with a known outcome"}, study.passages);
@@ -182,8 +198,10 @@ void describe_order(Fields& out, const OrderResult& result) {
              "number of cells after which the halves are compared, 0: at the end of every trial; "
              "field.max_gates, or, of trials not seen to their ends, what nine of ten trials pass"},
             study.max_gates);
-  out.text({"verdict", "what the chain must remember, in words"},
-           study.orders.empty() ? "" : verdict(study));
+  const std::string remembered = remembered_text(study);
+  out.text(
+      {"verdict", "what the chain must remember, in words"},
+      study.orders.empty() ? "" : verdict(study) + (remembered.empty() ? "" : " ") + remembered);
 }
 
 std::string answer_text(const OrderResult& result) {

@@ -41,11 +41,15 @@ class Groups {
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] const std::vector<int>& of_steps() const { return group_; }
   [[nodiscard]] int of(const Step& step) const {
-    const auto place = shown_.at(step);
-    const auto found = place ? trees_.find(*place) : trees_.end();
-    if (found == trees_.end()) return -1;
-    const auto& [first, space] = found->second;
+    const Trees* const trees = trees_of(step);
+    if (trees == nullptr) return -1;
+    const auto& [first, space] = *trees;
     return first + (space ? space->index_of({0, shown_.of(step).at}).state : 0);
+  }
+  /// Whether there are several groups where the step stands.
+  [[nodiscard]] bool is_divided(const Step& step) const {
+    const Trees* const trees = trees_of(step);
+    return trees != nullptr && trees->space && trees->space->size() > 1;
   }
 
  private:
@@ -53,6 +57,11 @@ class Groups {
     int first = 0;                      // group of the first leaf
     std::optional<StateSpace> space{};  // none: a single leaf
   };
+  [[nodiscard]] const Trees* trees_of(const Step& step) const {
+    const auto place = shown_.at(step);
+    const auto found = place ? trees_.find(*place) : trees_.end();
+    return found == trees_.end() ? nullptr : &found->second;
+  }
   const Shown& shown_;
   std::map<Standing, Trees> trees_;
   std::vector<int> group_;
@@ -186,7 +195,7 @@ void Chances::learn(const Shown& shown, int per_leaf) {
   }
 }
 
-void Chances::learn_factors(const Shown& shown, int per_leaf) {
+std::int64_t Chances::learn_factors(const Shown& shown, int per_leaf) {
   const Groups groups(others_, shown, per_leaf);
   ByGroup seen(groups.size(), outcomes_), expected(groups.size(), outcomes_);
   for (std::size_t i = 0; i < others_.size(); ++i)
@@ -224,8 +233,12 @@ void Chances::learn_factors(const Shown& shown, int per_leaf) {
   };
   for (std::size_t i = 0; i < others_.size(); ++i)
     change(&of_others_[i * outcomes_], groups.of_steps()[i], others_[i]->outcome);
-  for (std::size_t i = 0; i < own_.size(); ++i)
+  std::int64_t divided = 0;
+  for (std::size_t i = 0; i < own_.size(); ++i) {
     change(&of_own_[i * outcomes_], groups.of(*own_[i]), {});
+    divided += groups.is_divided(*own_[i]);
+  }
+  return divided;
 }
 
 void Chances::add_to(std::vector<double>& scores) const {

@@ -30,6 +30,32 @@ constexpr std::uint64_t kFolding = 0x6f726465'72000001, kDrawing = 0x6f726465'72
                         kLending = 0x6f726465'72000004;  // "order"
 constexpr std::size_t kFolds = 10;
 
+/// Subtracts the part of `vector` along a column of unit length.
+void take_out(const std::vector<double>& column, std::vector<double>& vector) {
+  const double along = std::inner_product(column.begin(), column.end(), vector.begin(), 0.0);
+  for (std::size_t i = 0; i < vector.size(); ++i) vector[i] -= along * column[i];
+}
+/// Makes columns orthonormal (modified Gram-Schmidt); those that depend on earlier ones become 0.
+void orthonormalise(std::vector<std::vector<double>>& columns) {
+  constexpr double kDependent = 1e-9;  // length of the rest, relative to the column's
+  const auto length = [](const std::vector<double>& column) {
+    return std::sqrt(std::inner_product(column.begin(), column.end(), column.begin(), 0.0));
+  };
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const double before = length(columns[k]);
+    for (std::size_t j = 0; j < k; ++j) take_out(columns[j], columns[k]);
+    const double rest = length(columns[k]);
+    for (double& x : columns[k]) x = rest > kDependent * before ? x / rest : 0.0;
+  }
+}
+
+template <class T>
+void shuffle(std::vector<T>& all, Random& random) {
+  for (std::size_t i = all.size(); i > 1; --i)
+    std::swap(all[i - 1],
+              all[static_cast<std::size_t>(random.below(static_cast<std::int64_t>(i)))]);
+}
+
 /// By passage: the earliest of its last `order` letters, shuffled among the passages that stand
 /// alike without it; kNoLetter for passages with fewer letters.
 std::vector<int> shuffled_letters(const std::vector<Step>& seen, int order, Random random) {
@@ -67,7 +93,6 @@ class Folds {
         section_(section),
         entry_(section),
         numbers_(section),
-        remembered_(remembered),
         fold_of_(std::move(fold_of)),
         per_leaf_(per_leaf) {
     for (Section* shown : {&entry_, &numbers_}) {
@@ -106,60 +131,97 @@ class Folds {
     }
   }
 
-  /// Passages that lend one another their remembered numbers, by passage: shuffled among the
-  /// passages of one leaf of a chain of this order, so that they say as much of the entry.
-  [[nodiscard]] std::vector<std::size_t> lenders(int order, Random random) const {
+  /// By passage: its entry with the remembered numbers of others that say as much of the entry. In
+  /// each leaf of a chain of this order the numbers are a linear function of the entry and rests,
+  /// and the rests are shuffled.
+  [[nodiscard]] std::vector<Entry> lent(int order, Random random) const {
     const std::vector<Step>& seen = steps_.seen;
     std::vector<const Step*> steps;
     for (const Step& step : seen) steps.push_back(&step);
-    const std::vector<int> group =
-        groups_of(steps, entries_at([order](const Step& step) {
-                    return step.is_first ? std::nullopt : standing(step, order);
-                  }),
-                  per_leaf_);
+    const std::size_t shown = entry_.coordinates.size(), numbers = numbers_.coordinates.size();
+    const int per_leaf = std::max(per_leaf_, 4 * static_cast<int>(shown + 1));
+    const std::vector<int> group = groups_of(steps, shown_at(entry_, knowing(order)), per_leaf);
     std::map<int, std::vector<std::size_t>> alike;
-    for (std::size_t i = 0; i < seen.size(); ++i)
+    std::vector<Entry> lent;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      lent.push_back(seen[i].entry);
       if (group[i] >= 0) alike[group[i]].push_back(i);
-    std::vector<std::size_t> lender(seen.size());
-    std::iota(lender.begin(), lender.end(), 0);
-    for (const auto& [_, members] : alike)
-      for (std::size_t i = members.size(); i > 1; --i)
-        std::swap(
-            lender[members[i - 1]],
-            lender[members[static_cast<std::size_t>(random.below(static_cast<std::int64_t>(i)))]]);
-    return lender;
+    }
+    std::vector<std::vector<double>> columns;
+    for (auto& [_, members] : alike) {
+      const auto number_of = [&](std::size_t member, std::size_t k) {
+        return seen[member].entry.at[k];
+      };
+      columns.assign(1, std::vector<double>(members.size(), 1.0));
+      for (std::size_t k = 0; k < shown; ++k)
+        for (auto& column = columns.emplace_back(); const std::size_t member : members)
+          column.push_back(number_of(member, k));
+      orthonormalise(columns);
+      std::vector<std::size_t> lender(members.size());
+      std::iota(lender.begin(), lender.end(), 0);
+      shuffle(lender, random);
+      for (std::size_t k = shown; k < shown + numbers; ++k) {
+        std::vector<double> rests;
+        for (const std::size_t member : members) rests.push_back(number_of(member, k));
+        for (const auto& column : columns) take_out(column, rests);
+        for (std::size_t i = 0; i < members.size(); ++i)
+          lent[members[i]].at[k] += rests[lender[i]] - rests[i];
+      }
+    }
+    return lent;
   }
 
   /// Adds the scores of one fold's bodies by a chain of this order and the numbers that they
-  /// remember; `by_chance` (shuffles x bodies): with those of their lenders.
-  void score_remembered(std::size_t fold, int order,
-                        const std::vector<std::vector<std::size_t>>& lenders,
-                        std::vector<double>& scores, Scores& by_chance) const {
+  /// remember; `by_chance` (shuffles x bodies): with lent numbers. Returns the number of passages
+  /// whose numbers can have told something.
+  std::int64_t score_remembered(std::size_t fold, int order,
+                                const std::vector<std::vector<Entry>>& lent,
+                                std::vector<double>& scores, Scores& by_chance) const {
     Chances chances = without_knowledge(fold);
     for (int k = 0; k <= order; ++k) learn(chances, k);
-    const auto add = [&](const std::vector<std::size_t>* lender, std::vector<double>& to) {
-      Chances knowing = chances;
-      const Shown numbers{numbers_,
-                          [&](const Step& step) {
-                            const Entry own =
-                                steps_.seen[lender ? (*lender)[step.number] : step.number].entry;
-                            return numbers_of(step.is_image ? mirrored(section_, own) : own);
-                          },
-                          [order](const Step& step) {
-                            return step.is_first ? std::nullopt : standing(step, order);
-                          }};
-      for (const int per_group : kPerGroup) knowing.learn_factors(numbers, per_group);
-      knowing.add_to(to);
+    const auto add = [&](const std::vector<Entry>* entries, std::vector<double>& to) {
+      const auto entry_of = [&](const Step& step) {
+        if (entries == nullptr) return step.entry;
+        const Entry& entry = (*entries)[step.number];
+        return step.is_image ? mirrored(section_, entry) : entry;
+      };
+      const auto numbers_of = [&](const Step& step) {
+        const Entry entry = entry_of(step);
+        Entry numbers;
+        std::copy(entry.at.begin() + std::ssize(entry_.coordinates), entry.at.end(),
+                  numbers.at.begin());
+        return numbers;
+      };
+      Chances with = chances;
+      std::int64_t told = 0;
+      // Numbers that matter everywhere alike, at each face and then for each word; and those that
+      // matter together with one coordinate.
+      for (const int per_group : {400, 100, 25, 7})
+        told = with.learn_factors({numbers_, numbers_of, knowing(0)}, per_group);
+      for (const int per_group : {100, 25})
+        if (order > 0) with.learn_factors({numbers_, numbers_of, knowing(order)}, per_group);
+      for (std::size_t k = 0; k < entry_.coordinates.size(); ++k) {
+        Section both = numbers_;
+        both.coordinates.insert(both.coordinates.begin(), entry_.coordinates[k]);
+        const auto both_of = [&](const Step& step) {
+          const Entry numbers = numbers_of(step);
+          Entry entry;
+          entry.at[0] = step.entry.at[k];
+          std::copy_n(numbers.at.begin(), numbers_.coordinates.size(), entry.at.begin() + 1);
+          return entry;
+        };
+        for (const int per_group : {100, 25})
+          with.learn_factors({both, both_of, knowing(order)}, per_group);
+      }
+      with.add_to(to);
+      return told;
     };
     for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
-      add(&lenders[shuffle], by_chance[shuffle]);
-    add(nullptr, scores);
+      add(&lent[shuffle], by_chance[shuffle]);
+    return add(nullptr, scores);
   }
 
  private:
-  /// Steps in a group of remembered numbers: first large groups, then smaller ones within.
-  static constexpr std::array<int, 3> kPerGroup{400, 100, 25};
-
   [[nodiscard]] Chances without_knowledge(std::size_t fold) const {
     std::vector<const Step*> own, others;
     for (const std::vector<Step>* all : {&steps_.seen, &steps_.images})
@@ -170,27 +232,24 @@ class Folds {
           own.push_back(&step);
     return {std::move(own), std::move(others), static_cast<int>(section_.faces.size()) + 1};
   }
-  [[nodiscard]] Shown entries_at(StandingOf at) const {
-    return {entry_, [](const Step& step) { return step.entry; }, std::move(at)};
+  [[nodiscard]] static Shown shown_at(const Section& shown, StandingOf at) {
+    return {shown, [](const Step& step) { return step.entry; }, std::move(at)};
+  }
+  [[nodiscard]] Shown entries_at(StandingOf at) const { return shown_at(entry_, std::move(at)); }
+  /// Where steps with remembered numbers stand, that is, all but the first of a trial.
+  [[nodiscard]] static StandingOf knowing(int order) {
+    return
+        [order](const Step& step) { return step.is_first ? std::nullopt : standing(step, order); };
   }
   void learn(Chances& chances, int order) const {
     const Shown shown = entries_at([order](const Step& step) { return standing(step, order); });
     if (order == 0) chances.learn(shown, 0);
     chances.learn(shown, per_leaf_);
   }
-  /// The remembered numbers of an entry, as the coordinates of another.
-  [[nodiscard]] Entry numbers_of(const Entry& entry) const {
-    Entry numbers;
-    std::copy(entry.at.begin() + static_cast<std::ptrdiff_t>(remembered_), entry.at.end(),
-              numbers.at.begin());
-    return numbers;
-  }
-
   const Steps& steps_;
   const Letters& letters_;
   const Section& section_;
-  Section entry_, numbers_;  // of one face: what an entry shows, what a body remembers
-  std::size_t remembered_;
+  Section entry_, numbers_;           // of one face: what an entry shows, what a body remembers
   std::vector<std::size_t> fold_of_;  // by body
   int per_leaf_;
 };
@@ -362,21 +421,25 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
   }
   if (!remembering) return study;
   const int order = study.answer().order;
-  std::vector<std::vector<std::size_t>> lenders;
+  std::vector<std::vector<Entry>> lent;
   for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
-    lenders.push_back(
-        folds.lenders(order, Random(Purpose::comparison, {options.seed, kLending, shuffle})));
-  Scores knowing(1, std::vector<double>(bodies, 0.0)), lent(kShuffles, knowing.front());
+    lent.push_back(
+        folds.lent(order, Random(Purpose::comparison, {options.seed, kLending, shuffle})));
+  Scores knowing(1, std::vector<double>(bodies, 0.0)), by_lent(kShuffles, knowing.front());
+  std::array<std::int64_t, kFolds> told{};
   tbb::parallel_for(std::size_t{0}, kFolds, [&](std::size_t fold) {
-    folds.score_remembered(fold, order, lenders, knowing.front(), lent);
+    told[fold] = folds.score_remembered(fold, order, lent, knowing.front(), by_lent);
   });
-  const double between = beyond_chance(knowing.front(), lent.data());
-  const double gained = std::accumulate(knowing.front().begin(), knowing.front().end(), 0.0);
-  const auto interval = simultaneous_95(knowing, {between}, options.seed).front();
   RememberedAnswer& numbers = study.remembered.emplace();
   numbers.keys = remembering->keys;
-  numbers.gain = std::expm1(gained / n);
-  for (std::size_t side : {0, 1}) numbers.interval[side] = std::expm1(interval[side] / n);
+  numbers.passages = std::accumulate(told.begin(), told.end(), std::int64_t{0});
+  if (numbers.passages == 0) return study;
+  const double between = beyond_chance(knowing.front(), by_lent.data());
+  const double gained = std::accumulate(knowing.front().begin(), knowing.front().end(), 0.0);
+  const auto interval = simultaneous_95(knowing, {between}, options.seed).front();
+  const auto passages = static_cast<double>(numbers.passages);
+  numbers.gain = std::expm1(gained / passages);
+  for (std::size_t side : {0, 1}) numbers.interval[side] = std::expm1(interval[side] / passages);
   return study;
 }
 

@@ -50,7 +50,11 @@ struct OrderAnswer {
 /// of the chosen order.
 struct RememberedAnswer {
   std::vector<std::string> keys;  // of the numbers
-  /// By how much the likelihood would be larger, as a share of it, with a 95 % interval.
+  /// Passages whose numbers could tell something. 0: the numbers do not vary, or too few passages
+  /// are alike; then nothing else is known.
+  std::int64_t passages = 0;
+  /// By how much the likelihood of such a passage was larger, as a share of it, with a 95 %
+  /// interval. A chain of more bodies can gain more.
   double gain = 0.0;
   std::array<double, 2> interval{};
   /// Whether the chain is known to forget something that matters.
@@ -82,8 +86,8 @@ struct OrderStudy {
 /// spread between seven shuffles. Chosen is the least order whose interval contains 0. Throws
 /// std::invalid_argument for fewer than 2 kLeastBodies bodies, and as cross_validate.
 ///
-/// `remembering`: the same bodies with what they remember. What they would gain by it is found as
-/// for a letter: against the same numbers shuffled among the passages of a leaf.
+/// `remembering`: the same bodies with what they remember. What they gain by it is found as for a
+/// letter: against numbers of other passages that say as much of the entry.
 [[nodiscard]] OrderStudy study_order(const Problem& problem, const RunPool& pool,
                                      const OrderOptions& options, const dynamics::Work& work = {},
                                      const Remembering* remembering = nullptr);

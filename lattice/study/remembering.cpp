@@ -105,20 +105,34 @@ std::vector<Cell::Remembered> remembered_by(const Problem& problem) {
   return numbers;
 }
 
-/// The standard deviation of a remembered number (1 if all are equal). Throws std::runtime_error
-/// if one is not finite.
-double scale_of(const PassageTable& passages, std::size_t coordinate, const std::string& key) {
-  std::vector<double> seen;
-  for (const CellPassage passage : passages.rows())
-    if (passage.fate == Fate::left) seen.push_back(passage.entry.at[coordinate]);
-  for (const double x : seen)
+/// Replaces a remembered number of all passages by its rank among them, between -1/2 and 1/2, so
+/// that its unit and its tails do not matter. Numbers that change their sign in the mirror are
+/// ranked together with those of mirror images. Returns the ranks' standard deviation (1 if all are
+/// equal). Throws std::runtime_error if a number is not finite.
+double rank(std::vector<CellPassage>& passages, std::size_t coordinate,
+            const Cell::Remembered& number) {
+  std::vector<double> all;
+  for (const CellPassage& passage : passages) {
+    if (passage.fate != Fate::left) continue;
+    const double x = passage.entry.at[coordinate];
     if (!std::isfinite(x))
-      throw std::runtime_error("cell: a body left a cell with " + key + " = " + std::to_string(x));
-  const auto n = static_cast<double>(seen.size());
-  const double mean = std::accumulate(seen.begin(), seen.end(), 0.0) / n;
-  double squares = 0.0;
-  for (const double x : seen) squares += (x - mean) * (x - mean);
-  return squares > 0.0 ? std::sqrt(squares / n) : 1.0;
+      throw std::runtime_error("cell: a body left a cell with " + number.key + " = " +
+                               std::to_string(x));
+    all.push_back(x);
+    if (number.odd) all.push_back(-x);
+  }
+  std::sort(all.begin(), all.end());
+  double squares = 0.0, count = 0.0;
+  for (CellPassage& passage : passages) {
+    if (passage.fate != Fate::left) continue;
+    double& x = passage.entry.at[coordinate];
+    const auto [from, to] = std::equal_range(all.begin(), all.end(), x);
+    x = 0.5 * static_cast<double>((from - all.begin()) - (all.end() - to)) /
+        static_cast<double>(all.size());
+    squares += x * x;
+    count += 1.0;
+  }
+  return squares > 0.0 ? std::sqrt(squares / count) : 1.0;
 }
 
 }  // namespace
@@ -153,12 +167,16 @@ std::optional<Remembering> remembering_bodies(const Problem& problem, std::int64
   for (std::shared_ptr<const Cell>& cell : showing.cells.cells)
     cell = std::make_shared<RememberingCell>(cell, section);
   Remembering bodies{.map = {}, .pool = simulated_bodies(showing, trials, seed, work), .keys = {}};
-  for (std::size_t k = problem.map().section.coordinates.size(); k < section.coordinates.size();
-       ++k) {
-    Coordinate& number = section.coordinates[k];
-    bodies.keys.push_back(number.key);
-    number.scale = scale_of(bodies.pool.scattered.each.passages, k, number.key);
+  PassageTable& table = bodies.pool.scattered.each.passages;
+  std::vector<CellPassage> passages;
+  for (const CellPassage passage : table.rows()) passages.push_back(passage);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const std::size_t coordinate = problem.map().section.coordinates.size() + k;
+    section.coordinates[coordinate].scale = rank(passages, coordinate, numbers[k]);
+    bodies.keys.push_back(numbers[k].key);
   }
+  table = PassageTable(section);
+  for (const CellPassage& passage : passages) table.push_back(passage);
   bodies.map = showing.cells.map;
   return bodies;
 }

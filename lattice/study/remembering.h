@@ -19,7 +19,8 @@ namespace gatewalk::lattice {
                                        std::uint64_t seed, const dynamics::Work& work = {});
 
 /// Simulated bodies, each with one trial. The last coordinates of entries are what the bodies
-/// remember, with its standard deviation as scale; 0 at the start, where it is not known.
+/// remember, each number as its rank among those of all passages; 0 at the start, where it is not
+/// known.
 struct Remembering {
   dynamics::CellMap map;
   RunPool pool;

@@ -338,6 +338,8 @@ TEST(ProgramCell, FirstLinesThatSayNoCell) {
   refused(remembers(R"({"key": "a"}, {"key": "a"})"),
           "remembered number 2: 'a' is the name of another number");
   refused(remembers(R"({"key": "s"})"), "remembered number 1: 's' is the name of another number");
+  refused(remembers(R"({"key": "a,b"})"),
+          "remembered number 1: 'key' must be a word without commas");
   refused(remembers(R"({"key": "a"}, {"key": "b"}, {"key": "c"}, {"key": "d"}, {"key": "e"})"),
           "'remembered' must be at most 4 numbers, and 8 together with 'coordinates'");
   refused(hello(s, t, up, R"(, "normals": -1)"),
