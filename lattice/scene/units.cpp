@@ -50,8 +50,13 @@ struct UnitEnd {
 };
 std::optional<UnitEnd> unit_end(std::string_view key) {
   for (const UnitName& name : kUnitNames) {
-    const std::string end = unit_text("_", name.prefix, name.written);
-    if (key.ends_with(end)) return UnitEnd{key.substr(0, key.size() - end.size()), &name};
+    std::string_view stem = key;
+    const auto cut = [&](std::string_view end) {
+      const bool has = stem.ends_with(end);
+      if (has) stem.remove_suffix(end.size());
+      return has;
+    };
+    if (cut(name.written) && cut(name.prefix) && cut("_")) return UnitEnd{stem, &name};
   }
   return {};
 }

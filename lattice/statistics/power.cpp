@@ -13,7 +13,6 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/statistics/gate_statistics.h"
-#include "lattice/statistics/log_gamma.h"
 #include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
@@ -62,39 +61,14 @@ std::int64_t first_of(std::int64_t low, std::int64_t high, Holds holds) {
   return low;
 }
 
-/// Counts that are significant: up to `low` (-1: none), and from `high` (n + 1: none).
-struct Critical {
-  std::int64_t low, high;
-};
-Critical critical_counts(std::int64_t n, double expected, double level) {
-  const Binomial null(n, expected);
-  const double mean = static_cast<double>(n) * expected;
-  // Distances that differ only by rounding are equal.
-  const double slack = 1e-9 * static_cast<double>(n);
-  const auto above = static_cast<std::int64_t>(std::floor(mean)) + 1;
-  const auto mirror = [&](std::int64_t k) { return 2.0 * mean - static_cast<double>(k); };
-  const std::int64_t high = first_of(above, n, [&](std::int64_t k) {
-    return null.at_least(k) +
-               null.at_most(static_cast<std::int64_t>(std::floor(mirror(k) + slack))) <=
-           level;
-  });
-  // `steps` counts down from the mean.
-  const auto below = static_cast<std::int64_t>(std::ceil(mean)) - 1;
-  const std::int64_t steps = first_of(0, below, [&](std::int64_t s) {
-    const std::int64_t k = below - s;
-    return null.at_most(k) +
-               null.at_least(static_cast<std::int64_t>(std::ceil(mirror(k) - slack))) <=
-           level;
-  });
-  return {below - steps, high};
-}
-
-/// The range in which a binomial has nearly all its probability, and the probabilities there.
+/// The range in which a binomial has nearly all its probability, and the probabilities there. What
+/// lies outside is less than 1e-17 in all.
 struct Likely {
   std::int64_t first = 0;
   std::vector<double> chance;
   [[nodiscard]] std::int64_t last() const { return first + std::ssize(chance) - 1; }
 };
+/// From the likeliest count outwards, each probability by its ratio to the one before.
 Likely likely(std::int64_t n, double p) {
   constexpr double kSigmas = 9.0;
   const double mean = static_cast<double>(n) * p;
@@ -102,29 +76,99 @@ Likely likely(std::int64_t n, double p) {
   Likely l;
   l.first = std::max<std::int64_t>(0, static_cast<std::int64_t>(mean - width));
   const auto last = std::min(n, static_cast<std::int64_t>(mean + width));
-  const boost::math::binomial_distribution<> binomial(static_cast<double>(n), p);
-  for (std::int64_t k = l.first; k <= last; ++k)
-    l.chance.push_back(boost::math::pdf(binomial, static_cast<double>(k)));
+  const auto mode = std::min(last, static_cast<std::int64_t>(mean + p));
+  l.chance.resize(static_cast<std::size_t>(last - l.first + 1));
+  const auto chance = [&](std::int64_t k) -> double& {
+    return l.chance[static_cast<std::size_t>(k - l.first)];
+  };
+  chance(mode) = 1.0;
+  const double up = p / (1.0 - p), down = (1.0 - p) / p;
+  for (std::int64_t k = mode; k < last; ++k)
+    chance(k + 1) = chance(k) * (static_cast<double>(n - k) / static_cast<double>(k + 1) * up);
+  for (std::int64_t k = mode; k > l.first; --k)
+    chance(k - 1) = chance(k) * (static_cast<double>(k) / static_cast<double>(n - k + 1) * down);
+  const double sum = std::accumulate(l.chance.begin(), l.chance.end(), 0.0);
+  for (double& c : l.chance) c /= sum;
   return l;
 }
 
-double log_choose(std::int64_t n, std::int64_t k) {
-  return log_gamma(static_cast<double>(n) + 1.0) - log_gamma(static_cast<double>(k) + 1.0) -
-         log_gamma(static_cast<double>(n - k) + 1.0);
+/// Sums of likely probabilities, from either end, where the small ones lie.
+class Tails {
+ public:
+  explicit Tails(const Likely& l) : first_(l.first), below_(l.chance), above_(l.chance) {
+    std::partial_sum(below_.begin(), below_.end(), below_.begin());
+    std::partial_sum(above_.rbegin(), above_.rend(), above_.rbegin());
+  }
+  [[nodiscard]] double at_most(std::int64_t k) const {
+    if (k < first_) return 0.0;
+    return k - first_ < std::ssize(below_) ? below_[static_cast<std::size_t>(k - first_)] : 1.0;
+  }
+  [[nodiscard]] double at_least(std::int64_t k) const {
+    if (k <= first_) return 1.0;
+    return k - first_ < std::ssize(above_) ? above_[static_cast<std::size_t>(k - first_)] : 0.0;
+  }
+
+ private:
+  std::int64_t first_;
+  std::vector<double> below_, above_;
+};
+
+/// Whether p is at most the level. Values that differ only by rounding are equal.
+bool is_significant(double p, double level) { return p <= level * (1.0 + 1e-10); }
+
+/// Counts that are significant: up to `low` (-1: none), and from `high` (n + 1: none).
+struct Critical {
+  std::int64_t low, high;
+};
+Critical critical_counts(std::int64_t n, double expected, double level) {
+  const Tails null(likely(n, expected));
+  const double mean = static_cast<double>(n) * expected;
+  // Distances that differ only by rounding are equal.
+  const double slack = 1e-9 * static_cast<double>(n);
+  const auto above = static_cast<std::int64_t>(std::floor(mean)) + 1;
+  const auto mirror = [&](std::int64_t k) { return 2.0 * mean - static_cast<double>(k); };
+  const std::int64_t high = first_of(above, n, [&](std::int64_t k) {
+    const auto other = static_cast<std::int64_t>(std::floor(mirror(k) + slack));
+    return is_significant(null.at_least(k) + null.at_most(other), level);
+  });
+  // `steps` counts down from the mean.
+  const auto below = static_cast<std::int64_t>(std::ceil(mean)) - 1;
+  const std::int64_t steps = first_of(0, below, [&](std::int64_t s) {
+    const std::int64_t k = below - s;
+    const auto other = static_cast<std::int64_t>(std::ceil(mirror(k) - slack));
+    return is_significant(null.at_most(k) + null.at_least(other), level);
+  });
+  return {below - steps, high};
+}
+/// Probability that a count is significant.
+double chance_of(const Critical& found, std::int64_t trials, double truth) {
+  const Binomial seen(trials, truth);
+  return seen.at_most(found.low) + seen.at_least(found.high);
 }
 
-/// Probability that one of two samples of n each has at most k of `total` successes.
-double at_most_of(std::int64_t n, std::int64_t total, std::int64_t k) {
-  const std::int64_t least = std::max<std::int64_t>(0, total - n);
-  if (k < least) return 0.0;
-  double chance = std::exp(log_choose(n, k) + log_choose(n, total - k) - log_choose(2 * n, total));
-  double sum = 0.0;
-  for (; k >= least && chance > 1e-18 * sum; --k) {  // down to k - 1
-    sum += chance;
-    chance *= static_cast<double>(k) / static_cast<double>(n - k + 1) *
-              static_cast<double>(n - total + k) / static_cast<double>(total - k + 1);
+/// By the number of successes in two samples of n each, 0, ..., `last` <= n: the largest count of
+/// the smaller sample that is significant (-1: none).
+std::vector<std::int64_t> significant_counts(std::int64_t n, std::int64_t last, double level) {
+  std::vector<std::int64_t> most;
+  // The probability that one of the samples has k of `total` successes, and at most k, for the
+  // least k that is not yet significant. One further success falls to the same sample with
+  // probability (n - k) / (2 n - total), so that k grows by at most one.
+  double exactly = 1.0, at_most = 1.0;
+  std::int64_t k = 0;
+  for (std::int64_t total = 0; total <= last; ++total) {
+    if (2 * k < total && is_significant(2.0 * at_most, level)) {
+      exactly *= static_cast<double>(n - k) * static_cast<double>(total - k) /
+                 (static_cast<double>(k + 1) * static_cast<double>(n - total + k + 1));
+      at_most += exactly;
+      ++k;
+    }
+    most.push_back(k - 1);
+    const double left = 1.0 / static_cast<double>(2 * n - total);
+    at_most -= exactly * static_cast<double>(n - k) * left;
+    exactly *= static_cast<double>(n - total + k) * static_cast<double>(total + 1) * left /
+               static_cast<double>(total + 1 - k);
   }
-  return sum;
+  return most;
 }
 
 /// The least n for which power(n), and the power of the next `ahead` numbers, is at least `wanted`.
@@ -155,30 +199,32 @@ std::optional<std::int64_t> least_trials(Power power, double wanted, Ahead ahead
 double power_of_share(std::int64_t trials, double expected, double truth, double level) {
   require_share(expected);
   require_share(truth);
-  const Critical found = critical_counts(trials, expected, level);
-  const Binomial seen(trials, truth);
-  return seen.at_most(found.low) + seen.at_least(found.high);
+  return chance_of(critical_counts(trials, expected, level), trials, truth);
 }
 
 double power_of_two_shares(std::int64_t trials_each, double first, double second, double level) {
   require_share(first);
   require_share(second);
   const Likely a = likely(trials_each, first), b = likely(trials_each, second);
-  // By total: the largest count of the smaller sample that is significant. It grows by at most one
-  // when the total does.
-  std::vector<std::int64_t> most;
-  std::int64_t k = -1;
-  for (std::int64_t total = a.first + b.first; total <= a.last() + b.last(); ++total) {
-    while (2 * (k + 1) < total && 2.0 * at_most_of(trials_each, total, k + 1) <= level) ++k;
-    most.push_back(k);
-  }
+  const Tails seen(b);
+  // Of more successes than failures, the failures are counted.
+  const std::int64_t least = a.first + b.first, greatest = a.last() + b.last();
+  const std::vector<std::int64_t> most = significant_counts(
+      trials_each, least > trials_each ? 2 * trials_each - least : std::min(greatest, trials_each),
+      level);
+  const auto found = [&](std::int64_t x, std::int64_t y) {
+    const std::int64_t total = x + y, fewer = std::min(total, 2 * trials_each - total);
+    return std::min(x, y) <= most[static_cast<std::size_t>(fewer)] + (total - fewer) / 2;
+  };
+  // For each x, the counts y that are significant: those up to `low` < x, and from `high` > x.
+  // Both grow with x.
   double power = 0.0;
+  std::int64_t low = b.first - 1, high = b.first;
   for (std::int64_t x = a.first; x <= a.last(); ++x) {
-    double found = 0.0;
-    for (std::int64_t y = b.first; y <= b.last(); ++y)
-      if (std::min(x, y) <= most[static_cast<std::size_t>(x + y - a.first - b.first)])
-        found += b.chance[static_cast<std::size_t>(y - b.first)];
-    power += a.chance[static_cast<std::size_t>(x - a.first)] * found;
+    while (low + 1 <= b.last() && low + 1 < x && found(x, low + 1)) ++low;
+    while (high <= b.last() && !(high > x && found(x, high))) ++high;
+    power +=
+        a.chance[static_cast<std::size_t>(x - a.first)] * (seen.at_most(low) + seen.at_least(high));
   }
   return power;
 }
@@ -205,12 +251,14 @@ std::optional<std::int64_t> trials_for_two_shares(double first, double second,
 
 SmallestDifference smallest_difference(std::int64_t trials, double expected,
                                        const PowerGoal& goal) {
+  require_share(expected);
+  const Critical found = critical_counts(trials, expected, goal.level);
   const auto towards = [&](double end) -> std::optional<double> {
-    if (power_of_share(trials, expected, end, goal.level) < goal.power) return {};
+    if (chance_of(found, trials, end) < goal.power) return {};
     double unseen = expected, seen = end;
     for (int k = 0; k < 40; ++k) {
       const double middle = 0.5 * (unseen + seen);
-      (power_of_share(trials, expected, middle, goal.level) < goal.power ? unseen : seen) = middle;
+      (chance_of(found, trials, middle) < goal.power ? unseen : seen) = middle;
     }
     return std::abs(seen - expected);
   };

@@ -65,6 +65,27 @@ TEST(PowerOfShare, OfWhatShouldNeverHappen) {
   EXPECT_FALSE(d.fewer);
 }
 
+/// Logarithms of 0!, ..., n!.
+std::vector<long double> log_factorials(int n) {
+  std::vector<long double> logs{0.0L};
+  for (int k = 1; k <= n; ++k) logs.push_back(logs.back() + std::log(static_cast<long double>(k)));
+  return logs;
+}
+/// Probabilities of 0, ..., n successes.
+std::vector<double> binomial_chances(int n, double p) {
+  const std::vector<long double> logs = log_factorials(n);
+  const long double success = std::log(static_cast<long double>(p)),
+                    failure = std::log(1.0L - static_cast<long double>(p));
+  std::vector<double> chances;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const std::size_t rest = logs.size() - 1 - k;
+    chances.push_back(static_cast<double>(std::exp(logs.back() - logs[k] - logs[rest] +
+                                                   static_cast<long double>(k) * success +
+                                                   static_cast<long double>(rest) * failure)));
+  }
+  return chances;
+}
+
 // By definition: p of a count is the probability of all counts at least as far from the mean.
 double power_by_definition(int n, double expected, double truth, double level) {
   double power = 0.0;
@@ -86,6 +107,32 @@ TEST(PowerOfShare, IsThatOfTheDefinition) {
           EXPECT_NEAR(power_of_share(n, expected, truth, level),
                       power_by_definition(n, expected, truth, level), 1e-12)
               << n << " " << expected << " " << truth << " " << level;
+}
+
+TEST(PowerOfShare, OfManyTrialsIsThatOfTheDefinition) {
+  for (const int n : {400, 2000})
+    for (const double expected : {0.0007, 0.2, 0.5, 0.985}) {
+      const std::vector<double> null = binomial_chances(n, expected);
+      std::vector<double> p(null.size(), 0.0);
+      for (int seen = 0; seen <= n; ++seen)
+        for (int k = 0; k <= n; ++k)
+          if (std::abs(k - n * expected) >= std::abs(seen - n * expected) - 1e-9)
+            p[static_cast<std::size_t>(seen)] += null[static_cast<std::size_t>(k)];
+      for (const double truth : {0.001, 0.18, 0.25, 0.55, 0.97})
+        for (const double level : {0.05, 0.01}) {
+          const std::vector<double> chances = binomial_chances(n, truth);
+          double power = 0.0;
+          for (std::size_t seen = 0; seen < p.size(); ++seen)
+            if (p[seen] <= level) power += chances[seen];
+          EXPECT_NEAR(power_of_share(n, expected, truth, level), power, 1e-12 * power)
+              << n << " " << expected << " " << truth << " " << level;
+        }
+    }
+}
+
+// Two of two, of a tenth each, have p = 0.01, which 0.1 * 0.1 exceeds by its rounding.
+TEST(PowerOfShare, AtTheLevelItselfIsSignificant) {
+  EXPECT_NEAR(power_of_share(2, 0.1, 0.3, 0.01), 0.09, 1e-15);
 }
 
 TEST(PowerOfShare, NoDifferenceIsFoundNoMoreOftenThanTheLevelSays) {
@@ -166,6 +213,39 @@ TEST(PowerOfTwoShares, IsThatOfAllDeals) {
         }
       EXPECT_NEAR(power_of_two_shares(n, first, second, 0.05), power, 1e-10) << n << " " << first;
     }
+}
+
+// By the probabilities of all deals of each number of successes.
+TEST(PowerOfTwoShares, OfManyTrialsIsThatOfAllDeals) {
+  for (const int n : {90, 700}) {
+    const std::vector<long double> logs = log_factorials(2 * n);
+    const auto log_choose = [&](int of, int k) {
+      return logs[static_cast<std::size_t>(of)] - logs[static_cast<std::size_t>(k)] -
+             logs[static_cast<std::size_t>(of - k)];
+    };
+    const auto size = static_cast<Eigen::Index>(n + 1);
+    Eigen::MatrixXd p = Eigen::MatrixXd::Ones(size, size);
+    for (int total = 0; total <= 2 * n; ++total) {
+      double at_most = 0.0;
+      for (int k = std::max(0, total - n); 2 * k < total; ++k) {
+        at_most += static_cast<double>(
+            std::exp(log_choose(n, k) + log_choose(n, total - k) - log_choose(2 * n, total)));
+        p(k, total - k) = p(total - k, k) = 2.0 * at_most;
+      }
+    }
+    for (const auto& [first, second] :
+         Pairs{{0.001, 0.02}, {0.2, 0.27}, {0.5, 0.5}, {0.97, 0.9}, {0.995, 0.3}})
+      for (const double level : {0.05, 0.01}) {
+        const std::vector<double> a = binomial_chances(n, first), b = binomial_chances(n, second);
+        double power = 0.0;
+        for (Eigen::Index x = 0; x < size; ++x)
+          for (Eigen::Index y = 0; y < size; ++y)
+            if (p(x, y) <= level)
+              power += a[static_cast<std::size_t>(x)] * b[static_cast<std::size_t>(y)];
+        EXPECT_NEAR(power_of_two_shares(n, first, second, level), power, 1e-12)
+            << n << " " << first << " " << second << " " << level;
+      }
+  }
 }
 
 TEST(TrialsForTwoShares, AreEnoughAndHardlyMore) {

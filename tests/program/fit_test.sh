@@ -92,15 +92,8 @@ expect 0 '^gatewalk: 1 of [0-9]* passages were lost' "$gatewalk" fit "${small[@]
 jq -s '.[0].numbers == .[1].numbers' passages.json other.json | grep -q true || fail "fit: order, costs or a lost passage matter"
 expect 2 'bare.csv: has passages, of which fit takes one file' "$gatewalk" fit "${small[@]}" bare.csv other.csv "${free[@]}"
 expect 2 'start has no meaning for passages' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --start 0,0,15
-# A program's numbers, by endings and by passages, which say where bodies entered. hopper.py in awk, which starts at
-# once.
-cat >hopper.awk <<'END'
-BEGIN { p = 2; print "{\"gatewalk\": 1, \"uniforms\": 2, \"parameters\": {\"push_J\": [2, 1, 3]}, \"costs\": [{\"key\": \"time_s\", \"unit\": \"s\"}, {\"key\": \"work_J\", \"unit\": \"J\"}], \"coordinates\": [{\"name\": \"s\", \"unit\": \"m\", \"scale\": 0.1}], \"faces\": [{\"name\": \"S\", \"move\": [0, 1]}]}"; fflush() }
-NF == 0 { fflush(); next }
-$1 == "set" { p = $3; next }
-{ off = p - ($3 < 0 ? 1 : 3); if ($5 < 0.9 - 0.3 * (off < 0 ? -off : off)) print $1, "left S", $6 - 0.5, 1, p, "-"; else print $1, "trapped", 1, p }
-END
-hopper=("$scenes/programs/hopper.toml" --cell-program "mawk -W interactive -f $work/hopper.awk")
+# A program's numbers, by endings and by passages, which say where bodies entered.
+hopper=("$scenes/programs/hopper.toml" --cell-program "$hopper_program")
 "$gatewalk" lattice "${hopper[@]}" --set parameters.push_J=1.4 --trials 120 --seed 3 --quiet --passages hops.csv --cell-file hops.toml --json hops.json --force
 push=(--free parameters.push_J=1:3 --trials 12288 --quiet)
 "$gatewalk" fit "${hopper[@]}" hops.csv "${push[@]}" --json hopped.json

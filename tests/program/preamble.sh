@@ -5,6 +5,8 @@
 set -u
 gatewalk=$(realpath "$1")
 scenes=$(realpath "$2")/scenes
+# The cells of scenes/programs/hopper.toml.
+hopper_program="mawk -W interactive -f $(realpath "$2")/tests/program/hopper.awk"
 keep=${3:+$(realpath -m "$3")}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
