@@ -80,16 +80,23 @@ class FaceBefore {
 /// Types of cells by place: each type of the map in each part of the field.
 class Places {
  public:
-  /// Parts of the field: three bands of rows with about equally many runs each; or the four cells
-  /// with most runs, each by itself, and all others together.
-  Places(bool bands, const CellMap& map, const FieldParams& field, const RunPool& pool)
+  /// Parts of the field: the cells with most runs, each by itself, and all others together. With
+  /// quarters that is one cell, often the start's, and the others are near or far and on the left
+  /// or right, with about equally many runs in both halves; else it is four cells.
+  Places(bool quarters, const CellMap& map, const FieldParams& field, const RunPool& pool)
       : map_(map), field_(field) {
-    const std::vector<std::int64_t> runs = runs_by_cell(pool);
+    std::vector<std::int64_t> runs = runs_by_cell(pool);
+    std::vector<std::size_t> order(runs.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return runs[a] > runs[b]; });
+    order.resize(std::min(order.size(), quarters ? std::size_t{1} : std::size_t{4}));
     part_.assign(runs.size(), 0);
-    if (bands)
-      divide_rows(runs);
-    else
-      divide_cells(runs);
+    if (quarters) {
+      for (const std::size_t cell : order) runs[cell] = 0;
+      divide(runs);
+    }
+    for (const std::size_t cell : order) part_[cell] = parts_++;
   }
 
   [[nodiscard]] Entry begin(const Entry& start) {
@@ -153,28 +160,26 @@ class Places {
     count(pool.scattered.each);
     return runs;
   }
-  void divide_rows(const std::vector<std::int64_t>& runs) {
-    parts_ = 3;
-    const auto all = static_cast<double>(
-        std::max<std::int64_t>(1, std::accumulate(runs.begin(), runs.end(), std::int64_t{0})));
-    double before = 0.0;
-    for (std::size_t row = 0; row < runs.size(); row += static_cast<std::size_t>(field_.columns)) {
-      const auto from = runs.begin() + static_cast<std::ptrdiff_t>(row);
-      const auto here =
-          static_cast<double>(std::accumulate(from, from + field_.columns, std::int64_t{0}));
-      const auto band = static_cast<int>(parts_ * (before + 0.5 * here) / all);
-      std::fill_n(part_.begin() + static_cast<std::ptrdiff_t>(row), field_.columns,
-                  std::min(band, parts_ - 1));
-      before += here;
+  /// Divides the field at a row and at a column.
+  void divide(const std::vector<std::int64_t>& runs) {
+    const auto columns = static_cast<std::size_t>(field_.columns);
+    std::vector<std::int64_t> by_row(static_cast<std::size_t>(field_.rows), 0), by_column(columns);
+    for (std::size_t cell = 0; cell < runs.size(); ++cell) {
+      by_row[cell / columns] += runs[cell];
+      by_column[cell % columns] += runs[cell];
     }
+    const std::size_t first_far = half_of(by_row), first_right = half_of(by_column);
+    for (std::size_t cell = 0; cell < runs.size(); ++cell)
+      part_[cell] = 2 * (cell / columns >= first_far) + (cell % columns >= first_right);
+    parts_ = 4;
   }
-  void divide_cells(const std::vector<std::int64_t>& runs) {
-    constexpr std::size_t kSingle = 4;
-    std::vector<std::size_t> order(runs.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return runs[a] > runs[b]; });
-    for (std::size_t k = 0; k < kSingle && k < order.size(); ++k) part_[order[k]] = parts_++;
+  /// The first row or column whose middle has at least half of the runs before it.
+  [[nodiscard]] static std::size_t half_of(const std::vector<std::int64_t>& runs) {
+    const auto all = std::accumulate(runs.begin(), runs.end(), std::int64_t{0});
+    std::int64_t before = 0;
+    std::size_t at = 0;
+    for (; at < runs.size() && 2 * before + runs[at] < all; ++at) before += runs[at];
+    return at;
   }
 
   const CellMap& map_;
@@ -220,11 +225,11 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
       pairs.section = label.section_of(map.section, any_symmetric(map));
       return maps_with(label, pairs, field, pool, starts, per_leaf);
     }
-    case Assumption::rows:
+    case Assumption::quarters:
     case Assumption::cells: {
       // Recorded bodies may be seen first anywhere: their rows are not those of the field.
       if (!pool.scattered.each.bodies.empty()) return {};
-      const Places label(dropped == Assumption::rows, map, field, pool);
+      const Places label(dropped == Assumption::quarters, map, field, pool);
       if (!label.fits()) return {};
       return maps_with(label, label.divided_map(), field, pool, starts, per_leaf);
     }
@@ -235,8 +240,8 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
 }  // namespace
 
 std::string_view key_of(Assumption assumption) {
-  constexpr std::array<std::string_view, kAssumptions.size()> kKeys{"mirror", "states",
-                                                                    "face_before", "rows", "cells"};
+  constexpr std::array<std::string_view, kAssumptions.size()> kKeys{
+      "mirror", "states", "face_before", "quarters", "cells"};
   return kKeys[static_cast<std::size_t>(assumption)];
 }
 

@@ -81,11 +81,11 @@ enum class Assumption : std::uint8_t {
   mirror,       // in symmetric cells: the mirror image of a run is a run too
   states,       // bodies of one state are alike
   face_before,  // the face by which a body entered the cell before does not matter
-  rows,         // cells of one type are alike in all rows of the field
+  quarters,     // cells of one type are alike near and far, on the left and on the right
   cells,        // and in all cells
 };
 inline constexpr std::array kAssumptions{Assumption::mirror, Assumption::states,
-                                         Assumption::face_before, Assumption::rows,
+                                         Assumption::face_before, Assumption::quarters,
                                          Assumption::cells};
 
 /// The final gates of the chain against those of a relaxed chain: a chain of the same runs without

@@ -46,7 +46,7 @@ soft() { echo "terrain.types.s.beams.stiffness_left_Nm_per_rad=$1 terrain.types.
   done
 } | xargs -P "$(nproc)" -d '\n' -I{} bash -c 'set -eo pipefail; read -ra words <<<"$1"; one "${words[@]}"' one {}
 {
-  echo "scene,how,amount,seed,error,own_p,wrong,mirror,states,face_before,rows,cells"
+  echo "scene,how,amount,seed,error,own_p,wrong,mirror,states,face_before,quarters,cells"
   sort "$scratch"/*.csv
 } >"$here/assumptions.csv"
 python3 "$here/summary.py" "$here"

@@ -9,7 +9,7 @@ from pathlib import Path
 OUT = Path(sys.argv[1])
 ERRORS = [0.0, 0.02, 0.03, 0.04, 0.06, 1.0]  # classes of total variation from the truth
 CAUSES = {"mirror": {"mirror"}, "states": {"states"}, "traps": {"face_before"}, "keeps": {"face_before"},
-          "types": {"rows", "cells"}, "right": set()}
+          "types": {"quarters", "cells"}, "right": set()}
 table = defaultdict(list)
 for row in csv.DictReader((OUT / "assumptions.csv").open()):
     how, error = row["how"], float(row["error"])

@@ -21,7 +21,7 @@ namespace {
 using namespace dynamics;
 
 /// What bodies of a Square do that a chain does not know.
-enum class Secret { none, remembers_face, differs_by_row, differs_by_cell };
+enum class Secret { none, remembers_face, differs_by_row, differs_by_side, differs_by_cell };
 
 /// A square cell: bodies go on, turn left or right, or are trapped. Place and secret stand behind
 /// the coordinate of the entry.
@@ -41,6 +41,7 @@ class Square : public Cell {
     double trapped = 0.1, turn = kTurn;
     if (secret_ == Secret::remembers_face && place.before > 0) turn = 2.0 * kTurn;
     if (secret_ == Secret::differs_by_row && place.row > 1) turn = 2.0 * kTurn;
+    if (secret_ == Secret::differs_by_side && place.column < 0) trapped = 0.3;
     if (secret_ == Secret::differs_by_cell && place.row == 1 && place.column == 0) trapped = 0.4;
     place.before = body.entry.face;
     const double u = body.random.uniform();
@@ -107,11 +108,13 @@ TEST(Assumptions, ThatAreNotMadeAreNotChecked) {
   EXPECT_EQ(find(square, Assumption::mirror), nullptr);
   EXPECT_NE(find(square, Assumption::states), nullptr);
   EXPECT_NE(find(square, Assumption::face_before), nullptr);
-  EXPECT_NE(find(square, Assumption::rows), nullptr);
+  EXPECT_NE(find(square, Assumption::quarters), nullptr);
   EXPECT_NE(find(square, Assumption::cells), nullptr);
   Problem row = squares(Secret::none);
   row.field.rows = 1;
-  EXPECT_EQ(find(checks_of(row, 1), Assumption::rows), nullptr);
+  row.field.own_start_column = 0;
+  row.field.columns = 1;
+  EXPECT_EQ(find(checks_of(row, 1), Assumption::quarters), nullptr);
   row.field.max_gates = 1;
   EXPECT_TRUE(checks_of(row, 1).empty());
 }
@@ -128,8 +131,15 @@ TEST(Assumptions, NameWhatIsWrong) {
     }
   };
   named(Secret::remembers_face, {Assumption::face_before});
-  named(Secret::differs_by_row, {Assumption::rows, Assumption::cells});
-  named(Secret::differs_by_cell, {Assumption::cells, Assumption::rows});
+  named(Secret::differs_by_row, {Assumption::quarters, Assumption::cells});
+  named(Secret::differs_by_cell, {Assumption::cells, Assumption::quarters});
+}
+
+TEST(Assumptions, QuartersDifferWhereSidesDo) {
+  // The face before tells of the side too, so that it may be named instead.
+  for (const std::uint64_t seed : {1, 2, 3})
+    EXPECT_TRUE(
+        find(checks_of(squares(Secret::differs_by_side), seed), Assumption::quarters)->is_wrong());
 }
 
 TEST(Assumptions, AMirrorThatIsNoneIsNamed) {
