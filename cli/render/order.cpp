@@ -38,7 +38,7 @@ std::string letters(const OrderStudy& study, int order) {
 std::string percent_of(double share) {
   constexpr double kRounding = 1e-9;
   const double percent = std::abs(share) < kRounding ? 0.0 : 100.0 * share;
-  return (std::abs(percent) < 100.0 ? digits(percent, 2) : fixed(percent, 0)) + " %";
+  return (std::abs(percent) < 99.5 ? digits(percent, 2) : fixed(percent, 0)) + " %";
 }
 
 /// The mean over both halves.
@@ -81,12 +81,14 @@ std::string remembered_text(const OrderStudy& study) {
   const std::string interval =
       fmt::format("[{}, {}]", percent_of(a.interval[0]), percent_of(a.interval[1]));
   return a.matters()
-             ? fmt::format("The chain forgets {}: knowing it made a passage {} more likely {}.",
-                           keys, percent_of(a.gain), interval)
+             ? fmt::format(
+                   "The chain forgets {}: knowing it made each of {} passages {} more likely {}.",
+                   keys, a.passages, percent_of(a.gain), interval)
              : fmt::format(
-                   "{} bodies do not show that the chain should know {}: it changed the "
-                   "likelihood of a passage by {} {}.",
-                   study.bodies, keys, percent_of(a.gain), interval);
+                   "{} bodies do not show that the chain should know {}: it changed the likelihood "
+                   "of "
+                   "each of {} passages by {} {}.",
+                   study.bodies, keys, a.passages, percent_of(a.gain), interval);
 }
 
 /// Whether bodies do what the chain of that order says, with the caution that few bodies need.
@@ -206,8 +208,9 @@ void describe_order(Fields& out, const OrderResult& result) {
 
 std::string answer_text(const OrderResult& result) {
   const OrderStudy& study = result.study;
-  std::string text =
-      wrapped(verdict(study)) + wrapped(remembered_text(study)) + wrapped(what_is_left(study));
+  std::string text = wrapped(verdict(study)) +
+                     (study.remembered ? wrapped(remembered_text(study)) : "") +
+                     wrapped(what_is_left(study));
   TextTable table({{"Order", 5},
                    {"likelihood", 12, 4},
                    {"best order more likely by, 95 %", 34},

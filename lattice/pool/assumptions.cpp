@@ -82,7 +82,7 @@ class Places {
  public:
   /// Parts of the field: the cells with most runs, each by itself, and all others together. With
   /// quarters that is one cell, often the start's, and the others are near or far and on the left
-  /// or right, with about equally many runs in both halves; else it is four cells.
+  /// or right, divided at the row and the column in the middle of the runs; else it is four cells.
   Places(bool quarters, const CellMap& map, const FieldParams& field, const RunPool& pool)
       : map_(map), field_(field) {
     std::vector<std::int64_t> runs = runs_by_cell(pool);

@@ -131,22 +131,36 @@ class Folds {
     }
   }
 
-  /// By passage: its entry with the remembered numbers of others that say as much of the entry. In
-  /// each leaf of a chain of this order the numbers are a linear function of the entry and rests,
-  /// and the rests are shuffled.
-  [[nodiscard]] std::vector<Entry> lent(int order, Random random) const {
+  /// By shuffle and passage: the passage's entry with remembered numbers of others. In each leaf of
+  /// a chain of this order the numbers are a linear function of the entry, and rests; the rests are
+  /// shuffled. So lent numbers say as much of the entry, as far as that is linear in a leaf.
+  [[nodiscard]] std::vector<std::vector<Entry>> lent(int order, std::uint64_t seed) const {
     const std::vector<Step>& seen = steps_.seen;
     std::vector<const Step*> steps;
-    for (const Step& step : seen) steps.push_back(&step);
+    std::vector<Entry> own;
+    std::map<Standing, std::int64_t> sizes;
+    for (const Step& step : seen) {
+      steps.push_back(&step);
+      own.push_back(step.entry);
+      for (int k = 0; !step.is_first && k <= order_of(step, order); ++k)
+        ++sizes[*standing(step, k)];
+    }
     const std::size_t shown = entry_.coordinates.size(), numbers = numbers_.coordinates.size();
     const int per_leaf = std::max(per_leaf_, 4 * static_cast<int>(shown + 1));
-    const std::vector<int> group = groups_of(steps, shown_at(entry_, knowing(order)), per_leaf);
+    const auto where_enough = [&](const Step& step) -> std::optional<Standing> {
+      if (step.is_first) return {};
+      int k = order_of(step, order);
+      while (k > 0 && sizes.at(*standing(step, k)) < 2 * per_leaf) --k;
+      return standing(step, k);
+    };
+    const std::vector<int> group = groups_of(steps, shown_at(entry_, where_enough), per_leaf);
     std::map<int, std::vector<std::size_t>> alike;
-    std::vector<Entry> lent;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      lent.push_back(seen[i].entry);
+    for (std::size_t i = 0; i < seen.size(); ++i)
       if (group[i] >= 0) alike[group[i]].push_back(i);
-    }
+    std::vector<std::vector<Entry>> lent(kShuffles, own);
+    std::vector<Random> random;
+    for (std::size_t shuffled = 0; shuffled < kShuffles; ++shuffled)
+      random.emplace_back(Purpose::comparison, Stream{seed, kLending, shuffled});
     std::vector<std::vector<double>> columns;
     for (auto& [_, members] : alike) {
       const auto number_of = [&](std::size_t member, std::size_t k) {
@@ -157,15 +171,18 @@ class Folds {
         for (auto& column = columns.emplace_back(); const std::size_t member : members)
           column.push_back(number_of(member, k));
       orthonormalise(columns);
-      std::vector<std::size_t> lender(members.size());
-      std::iota(lender.begin(), lender.end(), 0);
-      shuffle(lender, random);
-      for (std::size_t k = shown; k < shown + numbers; ++k) {
-        std::vector<double> rests;
-        for (const std::size_t member : members) rests.push_back(number_of(member, k));
-        for (const auto& column : columns) take_out(column, rests);
+      std::vector<std::vector<double>> rests(numbers);
+      for (std::size_t k = 0; k < numbers; ++k) {
+        for (const std::size_t member : members) rests[k].push_back(number_of(member, shown + k));
+        for (const auto& column : columns) take_out(column, rests[k]);
+      }
+      for (std::size_t shuffled = 0; shuffled < kShuffles; ++shuffled) {
+        std::vector<std::size_t> lender(members.size());
+        std::iota(lender.begin(), lender.end(), 0);
+        shuffle(lender, random[shuffled]);
         for (std::size_t i = 0; i < members.size(); ++i)
-          lent[members[i]].at[k] += rests[lender[i]] - rests[i];
+          for (std::size_t k = 0; k < numbers; ++k)
+            lent[shuffled][members[i]].at[shown + k] += rests[k][lender[i]] - rests[k][i];
       }
     }
     return lent;
@@ -236,10 +253,15 @@ class Folds {
     return {shown, [](const Step& step) { return step.entry; }, std::move(at)};
   }
   [[nodiscard]] Shown entries_at(StandingOf at) const { return shown_at(entry_, std::move(at)); }
+  /// The largest order, up to this one, at which a step has enough letters.
+  [[nodiscard]] static int order_of(const Step& step, int order) {
+    return std::min(order, static_cast<int>(step.letters.size()));
+  }
   /// Where steps with remembered numbers stand, that is, all but the first of a trial.
   [[nodiscard]] static StandingOf knowing(int order) {
-    return
-        [order](const Step& step) { return step.is_first ? std::nullopt : standing(step, order); };
+    return [order](const Step& step) {
+      return step.is_first ? std::nullopt : standing(step, order_of(step, order));
+    };
   }
   void learn(Chances& chances, int order) const {
     const Shown shown = entries_at([order](const Step& step) { return standing(step, order); });
@@ -336,6 +358,8 @@ int cells_of_most(const FieldTrials& trials) {
 
 OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderOptions& options,
                        const Work& work, const Remembering* remembering) {
+  if (remembering && remembering->pool.scattered.each.passed != pool.scattered.each.passed)
+    throw std::invalid_argument("validate: what is remembered must be of the same bodies");
   if (pool.bodies() < 2 * kLeastBodies)
     throw std::invalid_argument("validate: orders are compared with " +
                                 std::to_string(2 * kLeastBodies) + " bodies at least, these are " +
@@ -421,10 +445,7 @@ OrderStudy study_order(const Problem& problem, const RunPool& pool, const OrderO
   }
   if (!remembering) return study;
   const int order = study.answer().order;
-  std::vector<std::vector<Entry>> lent;
-  for (std::size_t shuffle = 0; shuffle < kShuffles; ++shuffle)
-    lent.push_back(
-        folds.lent(order, Random(Purpose::comparison, {options.seed, kLending, shuffle})));
+  const std::vector<std::vector<Entry>> lent = folds.lent(order, options.seed);
   Scores knowing(1, std::vector<double>(bodies, 0.0)), by_lent(kShuffles, knowing.front());
   std::array<std::int64_t, kFolds> told{};
   tbb::parallel_for(std::size_t{0}, kFolds, [&](std::size_t fold) {

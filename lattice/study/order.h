@@ -87,7 +87,8 @@ struct OrderStudy {
 /// std::invalid_argument for fewer than 2 kLeastBodies bodies, and as cross_validate.
 ///
 /// `remembering`: the same bodies with what they remember. What they gain by it is found as for a
-/// letter: against numbers of other passages that say as much of the entry.
+/// letter: against numbers of other passages that say as much of the entry, as far as that is
+/// linear in a leaf.
 [[nodiscard]] OrderStudy study_order(const Problem& problem, const RunPool& pool,
                                      const OrderOptions& options, const dynamics::Work& work = {},
                                      const Remembering* remembering = nullptr);

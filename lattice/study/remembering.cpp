@@ -34,7 +34,8 @@ Section remembering_section(Section plain, const std::vector<Cell::Remembered>& 
   return plain;
 }
 
-/// A cell whose entries show what its bodies remember.
+/// A cell whose entries show what its bodies remember. Only whole trials use it: they do not fork
+/// or forget, and lay no noise.
 class RememberingCell : public Cell {
  public:
   RememberingCell(std::shared_ptr<const Cell> cell, Section section)

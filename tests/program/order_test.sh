@@ -99,7 +99,7 @@ expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/fiel
 # right with probability 0.5 + grip / 2, and grips anew in each cell.
 expect 0 'bodies do not show that the chain should know what bodies carry' "$gatewalk" validate "$scenes/walker.toml" --order 0:1 --json disc.json
 holds '.remembered.numbers == ["held_draw", "held_for_s"] and (.remembered.matters | not) and .max_gates == 0' disc.json
-expect 0 'chain forgets what bodies carry (held_draw, held_for_s): knowing it made a passage' "$gatewalk" validate "$scenes/field.toml" \
+expect 0 'chain forgets what bodies carry (held_draw, held_for_s): knowing it made each of' "$gatewalk" validate "$scenes/field.toml" \
   --set forces.random_rate_Hz=1 --set forces.random_N=8 --order 0:1 --trials 400
 cat >grip.py <<'END'
 import sys
@@ -121,7 +121,7 @@ start = { face = "S", s_m = 0.0 }
 cell = { width_m = 1.0, length_m = 1.0, faces = [{ name = "S", move = [0, 1] }, { name = "L", move = [-1, 0] }, { name = "R", move = [1, 0] }], coordinates = [{ name = "s", unit = "m" }] }
 END
 grip() { "$gatewalk" validate grip.toml --cell-program "python3 grip.py '$1' ${2-}" --order 0:1 --trials 300 --json grip.json --force; }
-expect 0 'chain forgets what bodies carry (grip): knowing it made' grip '"remembered": [{"key": "grip"}],'
+expect 0 'chain forgets what bodies carry (grip): knowing it made each of' grip '"remembered": [{"key": "grip"}],'
 holds '.remembered.matters and .remembered.gain_95[0] > 0.02 and .order == 0' grip.json
 grep -q '"verdict": "The chain need not.*The chain forgets what' grip.json || fail "order: the verdict leaves out what bodies carry"
 expect 0 'carry (grip) cannot be told' grip '"remembered": [{"key": "grip"}],' 1,
