@@ -9,9 +9,10 @@
 ///   traps Q    with this probability a body that came from the side before is trapped
 ///   keeps Q    with this probability such a body does not go back to where it came from
 ///   types 0    all cells count as one type
-/// Prints lines "how,amount,seed,error,own_p,wrong,mirror,states,face_before,quarters,cells". error:
-/// the total variation from 100 000 trials. own_p: the p-value of the chain's own trials. wrong:
-/// the assumption that is named, or none. Then the p-value of each assumption (-1: not checked).
+/// Prints lines "how,amount,seed,error,own_p,wrong,mirror,states,face_before,quarters,cells".
+/// error: the total variation from 100 000 trials. own_p: the p-value of the chain's own trials.
+/// wrong: the assumption that is named, or none. Then the p-value of each assumption (-1: not
+/// checked).
 #include <cstdio>
 #include <memory>
 #include <optional>
