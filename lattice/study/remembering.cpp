@@ -117,8 +117,8 @@ double rank(std::vector<CellPassage>& passages, std::size_t coordinate,
     if (passage.fate != Fate::left) continue;
     const double x = passage.entry.at[coordinate];
     if (!std::isfinite(x))
-      throw std::runtime_error("cell: a body left a cell with " + number.key + " = " +
-                               std::to_string(x));
+      throw std::runtime_error("cell: a body left a cell with a number that is not finite: " +
+                               number.key);
     all.push_back(x);
     if (number.odd) all.push_back(-x);
   }
