@@ -66,11 +66,12 @@ std::vector<int> shuffled_letters(const std::vector<Step>& seen, int order, Rand
       letters[step.number] = step.letters[step.letters.size() - static_cast<std::size_t>(order)];
       alike[*standing(step, order - 1)].push_back(step.number);
     }
-  for (const auto& [place, numbers] : alike)
-    for (std::size_t i = numbers.size(); i > 1; --i)
-      std::swap(
-          letters[numbers[i - 1]],
-          letters[numbers[static_cast<std::size_t>(random.below(static_cast<std::int64_t>(i)))]]);
+  for (const auto& [place, numbers] : alike) {
+    std::vector<int> of_these;
+    for (const std::size_t number : numbers) of_these.push_back(letters[number]);
+    shuffle(of_these, random);
+    for (std::size_t i = 0; i < numbers.size(); ++i) letters[numbers[i]] = of_these[i];
+  }
   return letters;
 }
 
@@ -298,9 +299,7 @@ std::vector<std::size_t> dealt_folds(std::size_t bodies, std::uint64_t seed) {
   std::vector<std::size_t> order(bodies), fold(bodies);
   std::iota(order.begin(), order.end(), 0);
   Random random(Purpose::comparison, {seed, kFolding, 0});
-  for (std::size_t i = bodies; i > 1; --i)
-    std::swap(order[i - 1],
-              order[static_cast<std::size_t>(random.below(static_cast<std::int64_t>(i)))]);
+  shuffle(order, random);
   for (std::size_t i = 0; i < bodies; ++i) fold[order[i]] = i % kFolds;
   return fold;
 }
