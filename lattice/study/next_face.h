@@ -68,8 +68,8 @@ class Chances {
   void learn(const Shown& shown, int per_leaf);
   /// Learns by which factor each outcome is seen more often in a step's group than the chances so
   /// far expect. So numbers that change the chances everywhere alike count in large groups, with no
-  /// loss of what is known of the single step. Returns the number of own steps in one of several
-  /// groups of those that stand alike; only they can have learned.
+  /// loss of what is known of the single step. Returns the number of own steps for which the
+  /// numbers could tell something: where they stand, there are several groups.
   std::int64_t learn_factors(const Shown& shown, int per_leaf);
 
   /// Adds the log likelihood of each of the own steps to its body's score.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -81,8 +80,8 @@ constexpr std::size_t kShuffles = 7;
 /// By order from 1, and shuffle: shuffled_letters().
 using Shuffled = std::vector<std::array<std::vector<int>, kShuffles>>;
 
-/// Bodies of ten folds: the outcomes of those of one fold are predicted by the passages of the
-/// others.
+/// Cross-validation: the bodies are dealt into ten folds, and chains of nine folds predict the
+/// passages of the tenth.
 class Folds {
  public:
   /// `section`: shows the entries of `steps`; its coordinates from `remembered` on are numbers that
