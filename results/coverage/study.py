@@ -10,7 +10,7 @@ for: added in squares to the half of the interval on the truth's side, or to the
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
 """
-import csv, importlib.util, json, math, os, statistics, subprocess, sys, tempfile
+import csv, importlib.util, json, math, os, random, statistics, subprocess, sys, tempfile
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -34,9 +34,12 @@ LEGS_START = {"d_m": 0.01, "vx_m_per_s": 0, "vy_m_per_s": 0.25, "heading_rad": 0
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 120, 0.04
 FIRST_SEED = 2001  # the rules were chosen on others
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 40, "M": 6}  # chains of results/tree's scenes, 24 starts each
-SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40}  # of each scene
+UNSEEN = {"A": 30, "B": 15, "C": 30, "R": 100, "M": 20}  # chains of results/tree's scenes, 24 starts each
+# Of each scene.
+SEEDS_OF = {"analyze": 60, "validate": 60, "power": 2, "rare": 60, "build": 125, "recorded": 60, "imported": 100}
 VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
+RECORDED_BODIES, IMPORTED_RUNS = 400, 60  # bodies; counts in each row
+STRAIGHT_UP = "EN_12"  # the paper's bin of slow, straight entries from below
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
 
 
@@ -136,6 +139,8 @@ def predicted(count, scene, truth):
                       tv(answer, p) <= math.hypot(j["error_95"], noise_tv(p, TRUTH_TRIALS)))
             noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / TRUTH_TRIALS / len(p))
             count.add("predict: RMSE", scene, rmse(answer, p) <= math.hypot(j["rmse_per_100_95"], noise))
+            count.add("predict: no assumption called wrong (level 1 %)", scene,
+                      not any(check["wrong"] for check in j["assumptions"].values()))
             if j["corrcoef_95"] is not None:
                 count.add("predict: corrcoef", scene, corrcoef(answer, p) >= j["corrcoef_95"])
             for e, interval in j["endings_95"].items():
@@ -176,7 +181,7 @@ def unseen(count):
 
     held = defaultdict(list)  # by scene: the share of each chain's starts that hold
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for scene, starts, j in pool.map(one, [(s, seed) for s, n in UNSEEN.items() for seed in range(101, 101 + n)]):
+        for scene, starts, j in pool.map(one, [(s, seed) for s, n in UNSEEN.items() for seed in range(201, 201 + n)]):
             held[scene].append(0.0)
             for s, a in zip(starts, j["starts"]):
                 t = truths[f"{scene} {','.join(map(str, s))} many"]
@@ -271,6 +276,69 @@ def built(count, scene, truth):
                           math.hypot(said["state_space"]["error_95"][0], noise_tv(truth["final_gates"], TRUTH_TRIALS)))
 
 
+def recorded(count, scene, truth):
+    """Passages of some bodies, as an observer would have written them down; the method is not told."""
+    def one(seed):
+        with tempfile.TemporaryDirectory() as folder:
+            runs, cell, matrix = (Path(folder) / name for name in ("runs.csv", "cell.toml", "m.nc"))
+            run("lattice", *SCENES[scene], "--trials", RECORDED_BODIES, "--seed", seed, "--passages", runs,
+                "--cell-file", cell)
+            run("build", runs, "--cell", cell, "-o", matrix)
+            return run("predict", matrix)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for j in pool.map(one, seeds_of("recorded")):
+            of_chain(count, "recorded", scene, j, truth, RECORDED_BODIES, TRUTH_TRIALS)
+
+
+def imported(count, scene, truth):
+    """Counts drawn from a known chain, that of the scene's bins, whose own answer is the truth."""
+    if scene not in "ABC":
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        path = lambda name: Path(folder) / name
+        run("build", *SCENES[scene], "--bins", "paper", "--trials", 1000, "-o", path("bins.nc"))
+        run("export", path("bins.nc"), "--gate", "-o", path("known.csv"))
+        rows = defaultdict(list)
+        with open(path("known.csv"), newline="") as file:
+            for r in csv.DictReader(file):
+                rows[r["from"]].append((r["to"], float(r["probability"])))
+
+        def imported_as(name, lines):
+            with open(path(f"{name}.csv"), "w", newline="") as file:
+                csv.writer(file).writerows(lines)
+            run("import", path(f"{name}.csv"), "--states", path("known.states.csv"), "--start",
+                STRAIGHT_UP, "--set", "field.columns=9", "--set", "field.rows=9", "--set", "field.max_gates=15",
+                "-o", path(f"{name}.nc"))
+            return run("predict", path(f"{name}.nc"))
+
+        known = imported_as("exact", [("from", "to", "probability"), *((i, to, p) for i, of in rows.items()
+                                                                       for to, p in of)])
+        truth = {"endings": known["endings"], "final_gates": flat(known["final_gates"])}
+
+        def one(seed):
+            draw = random.Random(f"{scene} {seed}")
+            lines = [("from", "to", "count")]
+            for i, of in rows.items():
+                drawn = draw.choices([to for to, _ in of], [p for _, p in of], k=IMPORTED_RUNS)
+                lines += [(i, to, drawn.count(to)) for to in sorted(set(drawn))]
+            return imported_as(seed, lines)
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for j in pool.map(one, seeds_of("imported")):
+                of_chain(count, "imported", scene, j, truth, IMPORTED_RUNS * len(rows), math.inf)
+
+
+def of_chain(count, what, scene, j, truth, trials, truth_trials):
+    """Total variation, endings and gates of a prediction, or of a chain with replicates of its matrix."""
+    bar = j["error_95"] if "error_95" in j else j["matrix_sampling"]["total_variation_q95"]
+    noise = noise_tv(truth["final_gates"], truth_trials) if truth_trials < math.inf else 0.0
+    count.add(f"{what}: total variation", scene,
+              tv(flat(j["final_gates"]), truth["final_gates"]) <= math.hypot(bar, noise))
+    for e, interval in j["endings_95"].items():
+        count.share(f"{what}: {e}", scene, truth["endings"][e], j["endings"][e], interval, trials, truth_trials)
+    if "final_gates_95" in j:
+        gates_of(count, what, scene, j, truth["final_gates"], trials, truth_trials)
+
+
 def each(command, scene, *options):
     def one(seed):
         return run(command, *SCENES[scene], *options, "--seed", seed)
@@ -278,9 +346,9 @@ def each(command, scene, *options):
         yield from pool.map(one, seeds_of(command))
 
 
-ALSO_LEGS = ("predict", "lattice", "build")  # commands whose intervals are counted with LEGS too
+ALSO_LEGS = ("predict", "lattice", "build", "recorded")  # commands whose intervals are counted with LEGS too
 COMMANDS = {"predict": predicted, "lattice": simulated, "analyze": analyzed, "validate": validated, "power": powered,
-            "rare": rare, "build": built, "unseen": None}
+            "rare": rare, "build": built, "recorded": recorded, "imported": imported, "unseen": None}
 
 
 def main():
@@ -288,6 +356,12 @@ def main():
         own = list(SCENES)
         make_legs(Path(folder))
         measure(own, sys.argv[3:] or list(COMMANDS))
+
+
+def is_made_by(commands, row):
+    """Whether one of these commands makes this row: rows that it no longer makes must go."""
+    what = "unseen" if row.startswith("predict, unseen") else row.replace(",", ":").split(":")[0]
+    return what in commands
 
 
 def measure(own, commands):
@@ -309,16 +383,19 @@ def measure(own, commands):
             for scene in SCENES if command in ALSO_LEGS else own:
                 COMMANDS[command](count, scene, truths[scene])
     names = [*SCENES, "M", "R", "all"]
+    heads = ["interval", "program", "answers", *(f"{s}_percent" for s in names)]
+    version = subprocess.run([sys.argv[1], "--version"], capture_output=True, text=True, check=True).stdout.split("(")[1][:8]
     share = lambda key: f"{100 * count.held[key] / count.of[key]:.1f}" if count.of[key] else ""
-    rows = {row: [row, count.of[row, "all"], *(share((row, s)) for s in names)] for row in {row for row, _ in count.of}}
+    rows = {row: [row, version, count.of[row, "all"], *(share((row, s)) for s in names)]
+            for row in {row for row, _ in count.of}}
     path = OUT / "coverage.csv"
-    if path.exists() and sys.argv[3:]:
+    if path.exists():
         with open(path, newline="") as file:
-            of_name = ["interval", "answers", *(f"{s}_percent" for s in names)]
-            rows = {r["interval"]: [r.get(name, "") for name in of_name] for r in csv.DictReader(file)} | rows
+            kept = [r for r in csv.DictReader(file) if not is_made_by(commands, r["interval"])]
+            rows = {r["interval"]: [r.get(head, "") for head in heads] for r in kept} | rows
     with open(path, "w", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["interval", "answers", *(f"{s}_percent" for s in names)])
+        table.writerow(heads)
         table.writerows(rows[row] for row in sorted(rows))
 
 
