@@ -71,7 +71,7 @@ class PredictionRows {
     for (std::int64_t row = first_; row < field_.rows; ++row) {
       look_at(row);
       within_.clear();
-      apply_in_row(&PreparedChain::first_sideways, entering_.front(), within_);
+      apply_in_row(&RowStencils::first_sideways, entering_.front(), within_);
       if (!enter(row)) break;
       visits_.clear();
       const std::size_t type = types_.front().type;
@@ -86,7 +86,7 @@ class PredictionRows {
       entering_.front().clear();
       std::rotate(entering_.begin(), entering_.begin() + 1, entering_.end());
       for (const CellsOfType& cells : types_) {
-        const std::vector<Stencil>& upwards = plan_.chains[cells.type].upwards;
+        const std::vector<Stencil>& upwards = plan_.chains[cells.type].by_row->get().upwards;
         for (std::size_t k = 0; k < upwards.size(); ++k)
           apply(upwards[k], cells, layout_.shifts(0), visits_, entering_[k]);
       }
@@ -154,9 +154,9 @@ class PredictionRows {
   }
   /// Computes to += stencil from for all cells, each by the stencil of its type. All moves stay
   /// within one row of planes: mass that goes up arrives in the same column of `to`.
-  void apply_in_row(Stencil PreparedChain::*stencil, Planes from, Planes to) const {
+  void apply_in_row(Stencil RowStencils::*stencil, Planes from, Planes to) const {
     for (const CellsOfType& cells : types_)
-      apply(plan_.chains[cells.type].*stencil, cells, layout_.shifts(0), from, to);
+      apply(plan_.chains[cells.type].by_row->get().*stencil, cells, layout_.shifts(0), from, to);
   }
   void add(Planes from, Planes to) const {
     for (const Range& r : whole_)
@@ -252,7 +252,7 @@ class PredictionRows {
       if (!any) return;
       add(now_, visits_);
       next_.clear();
-      apply_in_row(&PreparedChain::sideways, now_, next_);
+      apply_in_row(&RowStencils::sideways, now_, next_);
       std::swap(now_, next_);
     }
   }
@@ -279,7 +279,7 @@ class PredictionRows {
         if (wanted[j] && !starts_[j].over && entered_[j] > 0.0)
           add_visits(chain, way, j, from, 0.5 * enough * entered_[j] / missing[j]);
       std::copy_n(within_.data(), within_.size(), next_.data());
-      apply_in_row(&PreparedChain::sideways, visits_, next_);
+      apply_in_row(&RowStencils::sideways, visits_, next_);
       double* const total = tally_.data() + kTallyTotal * stride_;
       std::fill_n(total, stride_, 0.0);
       for (const int input : plan_.sideways) {
@@ -357,10 +357,10 @@ class PredictionRows {
     const double width = field_.columns, rows = field_.rows;
     for (std::size_t k = 0; k < plan_.chains.size() && method != RowMethod::sums; ++k) {
       const PreparedChain& chain = plan_.chains[k];
-      const double stay = chain.stay->get(chain.sideways, plan_.inputs),
-                   sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
-                          std::log(std::clamp(stay, 1e-6, 1.0 - 1e-9)),
-                   by_sums = rows * sums * static_cast<double>(chain.sideways.terms.size()) *
+      const RowStencils& by_row = chain.by_row->get();
+      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
+                          std::log(std::clamp(by_row.stay, 1e-6, 1.0 - 1e-9)),
+                   by_sums = rows * sums * static_cast<double>(by_row.sideways.terms.size()) *
                              std::ceil(width / kLanes);
       double by_elimination = std::numeric_limits<double>::infinity();
       if (chain.elimination && method != RowMethod::sweeps) {
@@ -373,7 +373,7 @@ class PredictionRows {
       if (!ways_[k].columns.empty() || method == RowMethod::elimination) continue;
       if (ways_[k]
               .sweeps
-              .emplace(moves_within(chain), RowSweeps::Sums::brought, field_.columns, plan_.inputs)
+              .emplace(moves_within(by_row), RowSweeps::Sums::brought, field_.columns, plan_.inputs)
               .suits())
         continue;
       ways_[k].sweeps.reset();
@@ -381,12 +381,12 @@ class PredictionRows {
         ways_[k].columns = chain.elimination->get().columns(field_.columns);
     }
   }
-  [[nodiscard]] std::vector<RowSweeps::Move> moves_within(const PreparedChain& chain) const {
+  [[nodiscard]] std::vector<RowSweeps::Move> moves_within(const RowStencils& by_row) const {
     std::vector<RowSweeps::Move> moves;
-    for (const auto& groups : chain.sideways.passes)
+    for (const auto& groups : by_row.sideways.passes)
       for (const Group& g : groups)
         for (int i = g.begin; i < g.end; ++i) {
-          const Term& term = chain.sideways.terms[static_cast<std::size_t>(i)];
+          const Term& term = by_row.sideways.terms[static_cast<std::size_t>(i)];
           moves.push_back(
               {term.source, g.target, plan_.moves[static_cast<std::size_t>(g.shift)].di_x, term.p});
         }
@@ -422,15 +422,40 @@ class PredictionRows {
 
 }  // namespace
 
-double LazyStay::per_move(const Stencil& sideways, int inputs) {
-  return staying_per_move(inputs, [&](auto use) {
-    for (const auto& groups : sideways.passes)
+RowStencils LazyRowStencils::made() const {
+  const auto is_in = [&](const std::vector<int>& inputs) {
+    std::vector<char> in(static_cast<std::size_t>(plan_.inputs));
+    for (const int input : inputs) in[static_cast<std::size_t>(input)] = 1;
+    return in;
+  };
+  const std::vector<char> from_below = is_in(plan_.from_below), sideways = is_in(plan_.sideways);
+  const std::vector<int> move_of = moves_of_exits(plan_.moves, chain_);
+  std::vector<Entry> first, further;
+  std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan_.highest));
+  for (int input = 0; input < plan_.inputs; ++input) {
+    const auto i = static_cast<std::size_t>(input);
+    if (!from_below[i] && !sideways[i]) continue;
+    for (Probabilities::InnerIterator it(chain_.matrix(), input); it; ++it) {
+      const auto output = static_cast<std::size_t>(it.col());
+      const Exit& exit = chain_.exits()[output];
+      if (exit.next_input == Exit::kTrapped) continue;
+      const Entry entry{exit.next_input, move_of[output], input, it.value()};
+      if (exit.di_y > 0) upwards[static_cast<std::size_t>(exit.di_y) - 1].push_back(entry);
+      if (exit.di_y == 0 && from_below[i]) first.push_back(entry);
+      if (exit.di_y == 0 && sideways[i]) further.push_back(entry);
+    }
+  }
+  RowStencils made{Stencil(first), Stencil(further), {}, 0.0};
+  for (const auto& entries : upwards) made.upwards.emplace_back(entries);
+  made.stay = staying_per_move(plan_.inputs, [&](auto use) {
+    for (const auto& groups : made.sideways.passes)
       for (const Group& g : groups)
         for (int i = g.begin; i < g.end; ++i) {
-          const Term& term = sideways.terms[static_cast<std::size_t>(i)];
+          const Term& term = made.sideways.terms[static_cast<std::size_t>(i)];
           use(term.source, g.target, term.p);
         }
   });
+  return made;
 }
 
 MaybePredicted predict_by_rows(const PredictionPlan& plan, const Field& field,

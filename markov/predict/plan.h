@@ -25,32 +25,43 @@ inline constexpr double kNothing = 1e-280;
 /// the first move, by the second, ...
 enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
-/// staying_per_move() of a chain, computed on first use. Thread-safe.
-class LazyStay {
+struct PredictionPlan;
+
+/// A chain's moves for predictions by rows, of chains without moves to a row below.
+struct RowStencils {
+  Stencil first_sideways;        // moves within a row, of inputs entered from below
+  Stencil sideways;              // moves within a row, of inputs entered sideways
+  std::vector<Stencil> upwards;  // moves by 1 row, 2 rows, ...
+  double stay;                   // staying_per_move() of `sideways`
+};
+
+/// The RowStencils of a chain, made on first use: predictions by steps do without. Thread-safe.
+class LazyRowStencils {
  public:
-  /// Returns the number. `sideways` are the moves within a row of `inputs` inputs.
-  [[nodiscard]] double get(const Stencil& sideways, int inputs) const {
-    std::call_once(made_, [&] { per_move_ = per_move(sideways, inputs); });
-    return per_move_;
+  /// `plan` and `chain` must outlive this object.
+  LazyRowStencils(const PredictionPlan& plan, const Chain& chain) : plan_(plan), chain_(chain) {}
+  [[nodiscard]] const RowStencils& get() const {
+    std::call_once(made_, [this] { stencils_ = made(); });
+    return stencils_;
   }
 
  private:
-  [[nodiscard]] static double per_move(const Stencil& sideways, int inputs);
+  [[nodiscard]] RowStencils made() const;
+
+  const PredictionPlan& plan_;
+  const Chain& chain_;
   mutable std::once_flag made_;
-  mutable double per_move_ = 1.0;
+  mutable RowStencils stencils_{};
 };
 
 /// A chain as stencils.
 struct PreparedChain {
   std::vector<int> walking_inputs, unsampled;  // among inputs that some exit leads to
   Stencil moves;                               // all moves
-  Stencil first_sideways;                      // moves within a row, of inputs entered from below
-  Stencil sideways;                            // moves within a row, of inputs entered sideways
-  std::vector<Stencil> upwards;                // moves by 1 row, 2 rows, ...
   Stencil ends;                                // to all planes of a Tally but the first
   Stencil walking;                             // to kTallyTotal: all mass that goes on
-  std::unique_ptr<const LazyRowElimination> elimination;          // null if the chain does not suit
-  std::unique_ptr<LazyStay> stay = std::make_unique<LazyStay>();  // of `sideways`
+  std::unique_ptr<const LazyRowStencils> by_row;
+  std::unique_ptr<const LazyRowElimination> elimination;  // null if the chain does not suit
 };
 
 struct PredictionPlan {
@@ -72,6 +83,10 @@ struct PredictionPlan {
     return chains[static_cast<std::size_t>(field_chain.type_of(column, row))];
   }
 };
+
+/// By output of the chain: the number of its exit's move among `moves`; one more than the last if
+/// it is none of them.
+[[nodiscard]] std::vector<int> moves_of_exits(const std::vector<Move>& moves, const Chain& chain);
 
 /// Predicts how many steps a sum takes, from the remainder after 512, 1024, 2048, ... steps.
 class Pace {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "markov/predict/plan.h"
 #include "markov/predict/transient.h"
@@ -29,20 +30,15 @@ std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
 /// Prepares a chain as stencils; the plan already lists the inputs that are entered.
 PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
                       const std::vector<char>& is_entered) {
-  const auto is_in = [&](const std::vector<int>& inputs) {
-    std::vector<char> in(static_cast<std::size_t>(plan.inputs));
-    for (const int input : inputs) in[static_cast<std::size_t>(input)] = 1;
-    return in;
-  };
-  const std::vector<char> from_below = is_in(plan.from_below), sideways = is_in(plan.sideways);
   PreparedChain prepared;
-  std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
-  std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
+  std::vector<Entry> moves, ends, walking;
+  moves.reserve(static_cast<std::size_t>(chain.matrix().nonZeros()));
+  const std::vector<int> move_of = moves_of_exits(plan.moves, chain);
   std::vector<double> shares(kTallyMoved + plan.moves.size());  // shares of an input, by ending
   for (int input = 0; input < plan.inputs; ++input) {
-    const auto i = static_cast<std::size_t>(input);
     std::fill(shares.begin(), shares.end(), 0.0);
-    if (!is_entered[i]) continue;  // only a start can be here, and its first draw is separate
+    // Only a start can be in any other input, and its first draw is separate.
+    if (!is_entered[static_cast<std::size_t>(input)]) continue;
     if (chain.is_sampled(input)) {
       prepared.walking_inputs.push_back(input);
       walking.push_back({kTallyTotal, 0, input, 1.0});
@@ -51,29 +47,23 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
       shares[kTallyUnsampled] = 1.0;
     }
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
-      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      if (exit.next_input == Exit::kTrapped) {
+      const auto output = static_cast<std::size_t>(it.col());
+      const int next = chain.exits()[output].next_input, move = move_of[output];
+      if (next == Exit::kTrapped) {
         shares[kTallyTrapped] += it.value();
         continue;
       }
-      const auto move = static_cast<int>(number_of(plan.moves, exit));
-      const Entry entry{exit.next_input, move, input, it.value()};
       shares[static_cast<std::size_t>(kTallyMoved + move)] += it.value();
-      moves.push_back(entry);
-      if (exit.di_y > 0) upwards[static_cast<std::size_t>(exit.di_y) - 1].push_back(entry);
-      if (exit.di_y == 0 && from_below[i]) first_sideways.push_back(entry);
-      if (exit.di_y == 0 && sideways[i]) further_sideways.push_back(entry);
+      moves.push_back({next, move, input, it.value()});
     }
     for (std::size_t ending = 0; ending < shares.size(); ++ending)
       if (shares[ending] > 0.0)
         ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});
   }
   prepared.moves = Stencil(moves);
-  prepared.first_sideways = Stencil(first_sideways);
-  prepared.sideways = Stencil(further_sideways);
-  for (const auto& entries : upwards) prepared.upwards.emplace_back(entries);
   prepared.ends = Stencil(ends);
   prepared.walking = Stencil(walking);
+  prepared.by_row = std::make_unique<const LazyRowStencils>(plan, chain);
   if (RowElimination::suits(chain))
     prepared.elimination = std::make_unique<const LazyRowElimination>(chain);
   return prepared;
@@ -94,9 +84,11 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
       sideways(is_entered);
   for (const Chain& chain : chains) {
     plan->outputs = std::max(plan->outputs, chain.outputs());
+    std::vector<char> is_seen(static_cast<std::size_t>(chain.outputs()));
     for (Eigen::Index k = 0; k < chain.matrix().nonZeros(); ++k) {
-      const Exit& exit = chain.exits()[static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k])];
-      if (exit.next_input == Exit::kTrapped) continue;
+      const auto output = static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k]);
+      const Exit& exit = chain.exits()[output];
+      if (std::exchange(is_seen[output], 1) || exit.next_input == Exit::kTrapped) continue;
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
         throw std::invalid_argument("predict: a move of (" + std::to_string(exit.di_x) + ", " +
                                     std::to_string(exit.di_y) + ") cells is more than " +
@@ -153,6 +145,13 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
 }
 
 }  // namespace
+
+std::vector<int> moves_of_exits(const std::vector<Move>& moves, const Chain& chain) {
+  std::vector<int> numbers;
+  for (const Exit& exit : chain.exits())
+    numbers.push_back(static_cast<int>(number_of(moves, exit)));
+  return numbers;
+}
 
 std::optional<FinalDistribution> solve_circles(const FieldChain& chain, const Field& field,
                                                const Start& start, double most_operations) {

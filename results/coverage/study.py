@@ -34,7 +34,7 @@ LEGS_START = {"d_m": 0.01, "vx_m_per_s": 0, "vy_m_per_s": 0.25, "heading_rad": 0
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 120, 0.04
 FIRST_SEED = 2001  # the rules were chosen on others
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 30, "B": 15, "C": 30, "R": 100, "M": 20}  # chains of results/tree's scenes, 24 starts each
+UNSEEN = {"A": 16, "B": 6, "C": 16, "R": 80, "M": 12}  # chains of results/tree's scenes, 24 starts each
 # Of each scene.
 SEEDS_OF = {"analyze": 60, "validate": 60, "power": 2, "rare": 60, "build": 125, "recorded": 60, "imported": 100}
 VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
