@@ -80,6 +80,7 @@ class FaceBefore {
 /// Types of cells by place: each type of the map in each part of the field.
 class Places {
  public:
+  static constexpr int kMostParts = 5;
   /// Parts of the field: the cells with most runs, each by itself, and all others together. With
   /// quarters that is one cell, often the start's, and the others are near or far and on the left
   /// or right, divided at the row and the column in the middle of the runs; else it is four cells.
@@ -90,7 +91,7 @@ class Places {
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return runs[a] > runs[b]; });
-    order.resize(std::min(order.size(), quarters ? std::size_t{1} : std::size_t{4}));
+    order.resize(std::min(order.size(), quarters ? std::size_t{1} : std::size_t{kMostParts - 1}));
     part_.assign(runs.size(), 0);
     if (quarters) {
       for (const std::size_t cell : order) runs[cell] = 0;
@@ -193,14 +194,15 @@ class Places {
 template <class Label>
 std::optional<GroupedMaps> maps_with(const Label& label, const CellMap& labelled,
                                      const FieldParams& field, const RunPool& pool,
-                                     const std::vector<FirstRow>& starts, int per_leaf) {
+                                     const std::vector<FirstRow>& starts, int per_leaf,
+                                     int per_row) {
   const RunPool runs = relabelled(pool, labelled.section, label);
   std::vector<FirstRow> same;
   for (const FirstRow& start : starts) {
     const auto* const own = std::get_if<const OwnRuns*>(&start);
     same.push_back(own ? &runs.starts[static_cast<std::size_t>(*own - pool.starts.data())] : start);
   }
-  return mean_maps(labelled, field, runs, same, per_leaf);
+  return mean_maps(labelled, field, runs, same, per_leaf, per_row);
 }
 
 /// Predictions of the relaxed chain; nullopt if the chain does not make the assumption.
@@ -223,7 +225,7 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
       if (!label.fits(map.section, any_symmetric(map))) return {};
       CellMap pairs = map;
       pairs.section = label.section_of(map.section, any_symmetric(map));
-      return maps_with(label, pairs, field, pool, starts, per_leaf);
+      return maps_with(label, pairs, field, pool, starts, per_leaf, per_leaf);
     }
     case Assumption::quarters:
     case Assumption::cells: {
@@ -231,7 +233,8 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
       if (!pool.scattered.each.bodies.empty()) return {};
       const Places label(dropped == Assumption::quarters, map, field, pool);
       if (!label.fits()) return {};
-      return maps_with(label, label.divided_map(), field, pool, starts, per_leaf);
+      return maps_with(label, label.divided_map(), field, pool, starts,
+                       Places::kMostParts * per_leaf, per_leaf);
     }
   }
   return {};
@@ -270,17 +273,26 @@ std::vector<AssumptionCheck> check_assumptions(const CellMap& map, const FieldPa
   std::optional<GroupedMaps> usual = chain;
   if (per_leaf > kEntriesPerLeaf) usual = mean_maps(map, field, pool, starts, kEntriesPerLeaf);
   if (!chain || !usual) return checks;
+  const int leaf = std::min(per_leaf, kEntriesPerLeaf);
+  std::optional<GroupedMaps> large_states;
   for (const Assumption dropped : kAssumptions) {
-    const bool of_states = dropped == Assumption::states;
+    const bool of_states = dropped == Assumption::states,
+               by_place = dropped == Assumption::quarters || dropped == Assumption::cells;
     const bool is_large = of_states && per_leaf > kEntriesPerLeaf;
-    const auto relaxed =
-        is_large ? usual
-        : of_states && small_leaves
-            ? small_leaves
-            : relaxed_maps(dropped, map, field, pool, starts, std::min(per_leaf, kEntriesPerLeaf));
+    const auto relaxed = is_large ? usual
+                         : of_states && small_leaves
+                             ? small_leaves
+                             : relaxed_maps(dropped, map, field, pool, starts, leaf);
     if (!relaxed) continue;
-    const GroupDifference d = group_difference(is_large ? *chain : *usual, *relaxed, coordinates,
-                                               seed, static_cast<std::uint64_t>(dropped));
+    // In a chain divided by place each row has the runs of one part of the field. Its states are
+    // larger for that, and so are those of the chain that it is compared with.
+    if (by_place && !large_states)
+      large_states = mean_maps(map, field, pool, starts, Places::kMostParts * leaf, leaf);
+    const GroupDifference d =
+        group_difference(is_large   ? *chain
+                         : by_place ? *large_states
+                                    : *usual,
+                         *relaxed, coordinates, seed, static_cast<std::uint64_t>(dropped));
     checks.push_back({dropped, d.total_variation, d.chance_95, d.p});
   }
   std::vector<double> p;

@@ -172,7 +172,8 @@ std::int64_t Kernel::nonzeros() const {
   return all;
 }
 
-Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGroup group) {
+Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGroup group,
+                 std::optional<int> per_row) {
   const std::vector<std::size_t> images = images_of(map);
   const Section& section = map.section;
   EntryTable entries(section);
@@ -185,6 +186,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   std::vector<int> row, column;
   const std::int64_t fits = 2 * static_cast<std::int64_t>(entries.size()) / kMostStates;
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
+  const int least = per_row.value_or(per_leaf);
   StateSpace space = tree_space(section, entries, per_leaf, {}, &row);
   column.reserve(row.size());
   each_kernel_run(pool, group, [&](const Entry&, const CellPassage& run, const CellPassage* next) {
@@ -201,7 +203,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
                                                 std::vector<std::int64_t>(section.faces.size()));
     for (std::size_t i = 0; i < types.size(); ++i)
       ++runs[types[i]][static_cast<std::size_t>(entries.face(i))];
-    kernel.borrowers = Borrowers(section, runs, 2 * std::int64_t{per_leaf});
+    kernel.borrowers = Borrowers(section, runs, 2 * std::int64_t{least});
     add_borrowed(kernel, map, pool, group, entries, types, row, column);
   }
   const auto seen_in = [&](const EntryTable& there, const std::vector<int>& states) {
@@ -222,8 +224,8 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
       to.push_back(column[i]);
     }
     seen_in(there, from);
-    kernel.counts.push_back(counts_of_type(kernel.space, std::move(from), to, per_leaf,
-                                           kernel.shared_by.emplace_back()));
+    kernel.counts.push_back(
+        counts_of_type(kernel.space, std::move(from), to, least, kernel.shared_by.emplace_back()));
   }
   return kernel;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "dynamics/cells/state_space.h"
@@ -113,9 +114,11 @@ struct Kernel {
 
 /// Counts the runs of one group of the trials, except the starts' own first runs and runs that
 /// broke. In symmetric cells a run counts twice, with its mirror image. Leaves are larger than
-/// `per_leaf` if there would be more than kMostStates.
+/// `per_leaf` if there would be more than kMostStates. With several types of cells, leaves with
+/// fewer than `per_row` runs of a type (default: `per_leaf`) share their row of that type.
 [[nodiscard]] Kernel kernel_of(const dynamics::CellMap& map, const RunPool& pool,
-                               int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
+                               int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {},
+                               std::optional<int> per_row = {});
 
 /// Sums of the costs of the runs behind each of the kernel's counts: by type, in the order of the
 /// nonzeros.

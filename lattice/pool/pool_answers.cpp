@@ -156,12 +156,12 @@ std::vector<std::optional<SmallLeaves>> by_small_leaves(const dynamics::CellMap&
 
 std::optional<GroupedMaps> mean_maps(const dynamics::CellMap& map, const FieldParams& field,
                                      const RunPool& pool, const std::vector<FirstRow>& starts,
-                                     int leaf) {
+                                     int leaf, std::optional<int> per_row) {
   if (by_walks(2 * kernel_runs(pool), field)) return {};
   GroupedMaps maps{.whole = {}, .groups = std::vector<markov::CellProbabilities>(kTrialGroups)};
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-    const Kernel kernel = kernel_of(map, pool, leaf, group);
+    const Kernel kernel = kernel_of(map, pool, leaf, group, per_row);
     const markov::Counts rows = mean_row(first_rows(
         kernel, map, pool, starts, map.type_of(field.start_column(), field.start_row), {group}));
     FinalDistribution found = std::move(answers_of(kernel, map, rows, field, {}, 0).final.front());

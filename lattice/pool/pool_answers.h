@@ -50,10 +50,12 @@ struct SmallLeaves {
     const std::vector<FirstRow>& starts, int leaf, TrialGroup group = {});
 
 /// Final gates by the exact chain with leaves of `leaf` entries: means over the starts, by all
-/// trials and by each group of the trials. nullopt if an exact prediction takes too long.
+/// trials and by each group of the trials. `per_row`: see kernel_of(). nullopt if an exact
+/// prediction takes too long.
 [[nodiscard]] std::optional<GroupedMaps> mean_maps(const dynamics::CellMap& map,
                                                    const FieldParams& field, const RunPool& pool,
-                                                   const std::vector<FirstRow>& starts, int leaf);
+                                                   const std::vector<FirstRow>& starts, int leaf,
+                                                   std::optional<int> per_row = {});
 
 /// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
 /// shape. A prediction that knows no way to one of these endings is returned as it is.
