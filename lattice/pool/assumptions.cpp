@@ -195,7 +195,7 @@ template <class Label>
 std::optional<GroupedMaps> maps_with(const Label& label, const CellMap& labelled,
                                      const FieldParams& field, const RunPool& pool,
                                      const std::vector<FirstRow>& starts, int per_leaf,
-                                     int per_row) {
+                                     std::optional<int> per_row = {}) {
   const RunPool runs = relabelled(pool, labelled.section, label);
   std::vector<FirstRow> same;
   for (const FirstRow& start : starts) {
@@ -225,7 +225,7 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
       if (!label.fits(map.section, any_symmetric(map))) return {};
       CellMap pairs = map;
       pairs.section = label.section_of(map.section, any_symmetric(map));
-      return maps_with(label, pairs, field, pool, starts, per_leaf, per_leaf);
+      return maps_with(label, pairs, field, pool, starts, per_leaf);
     }
     case Assumption::quarters:
     case Assumption::cells: {

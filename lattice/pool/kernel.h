@@ -115,7 +115,8 @@ struct Kernel {
 /// Counts the runs of one group of the trials, except the starts' own first runs and runs that
 /// broke. In symmetric cells a run counts twice, with its mirror image. Leaves are larger than
 /// `per_leaf` if there would be more than kMostStates. With several types of cells, leaves with
-/// fewer than `per_row` runs of a type (default: `per_leaf`) share their row of that type.
+/// fewer than `per_row` runs of a type (default: as many as a leaf has) share their row of that
+/// type, and words with fewer than twice as many borrow runs.
 [[nodiscard]] Kernel kernel_of(const dynamics::CellMap& map, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {},
                                std::optional<int> per_row = {});

@@ -376,6 +376,7 @@ GroupDifference group_difference(const GroupedMaps& first, const GroupedMaps& se
   const auto tv = [](const auto& d) { return 0.5 * d.template lpNorm<1>(); };
 
   GroupDifference d{.total_variation = tv(whole)};
+  if (d.total_variation <= kShareRounding) return d;
   // With up to three coordinates both predictions have most of their bias in common. (Without any
   // allowance, 1 % of right chains had p below 0.01 too.)
   const double part = coordinates <= 3 ? 0.5 : 1.0;

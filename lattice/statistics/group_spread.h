@@ -93,7 +93,7 @@ struct GroupDifference {
   /// 95 % of differences by chance are at most this: sampling error as the groups show it, beside
   /// what the bias of states explains, or what is small beside the first prediction's own error.
   double chance_95 = 0.0;
-  double p = 1.0;  // share of such differences that are as large
+  double p = 1.0;  // share of such differences that are as large; 1 for rounding alone
 };
 /// Compares two predictions; `coordinates`: number by which the states differ. `number` tells apart
 /// the draws of several comparisons with one seed.

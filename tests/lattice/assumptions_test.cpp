@@ -286,6 +286,16 @@ TEST(GroupDifference, OfTwoPredictions) {
   EXPECT_GT(group_difference(first, around({0.002, -0.002, 0.0, 0.0}, 0.01, 1), 3, 1, 0).p, 0.05);
 }
 
+TEST(GroupDifference, IsNoneWithinRounding) {
+  const auto map = [](double there) { return CellProbabilities::Constant(1, 1, there); };
+  GroupedMaps first{map(1.0), {}, 0.0}, second{map(1.0 - 1e-15), {}, 0.0};
+  for (int g = 0; g < kTrialGroups; ++g) {
+    first.groups.push_back(map(1.0));
+    second.groups.push_back(map(1.0 - 1e-15));
+  }
+  EXPECT_EQ(group_difference(first, second, 3, 1, 0).p, 1.0);
+}
+
 TEST(Holm, ByHand) {
   // Smallest x 4, next x 3, next x 2, last x 1; never below an earlier one, never above 1.
   const std::vector<double> adjusted = holm({0.02, 0.01, 0.9, 0.02});
