@@ -85,9 +85,8 @@ std::string remembered_text(const OrderStudy& study) {
                    "The chain forgets {}: knowing it made each of {} passages {} more likely {}.",
                    keys, a.passages, percent_of(a.gain), interval)
              : fmt::format(
-                   "{} bodies do not show that the chain should know {}: it changed the likelihood "
-                   "of "
-                   "each of {} passages by {} {}.",
+                   "{} bodies do not show that the chain should know {}: it changed the "
+                   "likelihood of each of {} passages by {} {}.",
                    study.bodies, keys, a.passages, percent_of(a.gain), interval);
 }
 

@@ -328,9 +328,8 @@ def imported(count, scene, truth):
 def of_chain(count, what, scene, j, truth, trials, truth_trials):
     """Total variation, endings and gates of a prediction, or of a chain with replicates of its matrix."""
     bar = j["error_95"] if "error_95" in j else j["matrix_sampling"]["total_variation_q95"]
-    noise = noise_tv(truth["final_gates"], truth_trials) if truth_trials < math.inf else 0.0
-    count.add(f"{what}: total variation", scene,
-              tv(flat(j["final_gates"]), truth["final_gates"]) <= math.hypot(bar, noise))
+    count.add(f"{what}: total variation", scene, tv(flat(j["final_gates"]), truth["final_gates"]) <=
+              math.hypot(bar, noise_tv(truth["final_gates"], truth_trials)))
     for e, interval in j["endings_95"].items():
         count.share(f"{what}: {e}", scene, truth["endings"][e], j["endings"][e], interval, trials, truth_trials)
     if "final_gates_95" in j:
