@@ -4,7 +4,7 @@
 #   results/coverage/run.sh [GATEWALK [COMMAND...]]      about 2 hours on two cores (20 minutes more without truth.json), needs
 # python3. With commands (predict, lattice, analyze, validate, power, rare, build, recorded, imported, unseen) only their
 # rows are made anew; each row names the program that made it.
-# Writes coverage.csv, unseen_chains.csv, manifest.txt; truth.json if it is not there.
+# Writes coverage.csv, manifest.txt; truth.json if it is not there.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)

@@ -5,12 +5,16 @@
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
 chain was not built with, of the full dynamics, and of what else prints intervals: analyze, validate, power, rare,
 build. With commands named, only their rows are made anew; the others stay. Truth: 10^6 full trials of another
-seed (of costs and rows 100 000, of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed
-for: added in squares to the half of the interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
-what the answer was made from; an interval of such a share can only say "at most", and should hold more
-often.
+seed (of costs and rows 100 000, of unseen starts 150 000 or 400 000, of results/tree), whose own noise is allowed
+for: added in squares to the half of the interval on the truth's side, or to the bar. Rare: shares of which fewer
+than ten trials are expected in what the answer was made from; an interval of such a share can only say "at most",
+and should hold more often.
+
+The answers of one command with one seed share its runs: they are one pool. The interval of a coverage counts pools
+(Korn and Graubard, Confidence intervals for proportions with small expected number of positive counts estimated from
+survey data, Surv. Methodol. 24, 1998).
 """
-import csv, importlib.util, json, math, os, random, statistics, subprocess, sys, tempfile
+import csv, importlib.util, json, math, os, random, subprocess, sys, tempfile
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -31,13 +35,12 @@ SCENES = {
 LEGS = ("legs3", "legs5", "legs8")
 LEGS_START = {"d_m": 0.01, "vx_m_per_s": 0, "vy_m_per_s": 0.25, "heading_rad": 0, "turn_rad_per_s": 0, "phase": 0.5,
               "stride": 1, "load": 1}
-TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 120, 0.04
+TRUTH_TRIALS, ACCURACY = 1_000_000, 0.04
 FIRST_SEED = 2001  # the rules were chosen on others
-LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 40, "M": 6}  # chains of results/tree's scenes, 24 starts each
-# Of each scene.
-SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40, "recorded": 60, "imported": 100}
-VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
+# Of each scene. Of unseen starts: chains, with 24 starts each.
+SEEDS_OF = {"predict": 130, "lattice": 200, "analyze": 60, "validate": 60, "power": 2, "rare": 60, "build": 130,
+            "recorded": 60, "imported": 100, "unseen": 60}
+LATTICE_TRIALS, VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 1000, 6, 100_000, 100_000
 RECORDED_BODIES, IMPORTED_RUNS = 400, 60  # bodies; counts in each row
 STRAIGHT_UP = "EN_12"  # the paper's bin of slow, straight entries from below
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
@@ -94,14 +97,51 @@ def more_truth_of(scene):
             "rows": [r["direct_entered"] / MORE_TRUTH_TRIALS for r in rows["rows"]]}
 
 
+def below(k, n, p):
+    """The probability of at most k of n."""
+    of = lambda i: math.exp(math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1)
+                            + i * math.log(p) + (n - i) * math.log1p(-p))
+    return min(1.0, math.fsum(of(i) for i in range(k + 1)))
+
+
 class Count:
+    """Answers that hold, by kind, scene and pool."""
+
     def __init__(self):
-        self.held, self.of = defaultdict(int), defaultdict(int)
+        self.held, self.of = (defaultdict(lambda: defaultdict(int)) for _ in range(2))
+        self.pool = 0
+
+    def next_pool(self):
+        self.pool += 1
 
     def add(self, row, scene, holds):
         for key in ((row, scene), (row, "all")):
-            self.of[key] += 1
-            self.held[key] += holds
+            self.of[key][self.pool] += 1
+            self.held[key][self.pool] += bool(holds)
+
+    def answers(self, key):
+        return sum(self.of[key].values())
+
+    def coverage(self, key):
+        return sum(self.held[key].values()) / self.answers(key)
+
+    def error(self, key):
+        """The standard error of the coverage over pools."""
+        p, pools = self.coverage(key), len(self.of[key])
+        squares = sum((self.held[key][i] - p * n) ** 2 for i, n in self.of[key].items())
+        return math.sqrt(squares * pools / max(1, pools - 1)) / self.answers(key)
+
+    def verdict(self, key):
+        """Where the 99 % interval of Clopper and Pearson lies, with as many independent answers as show this error."""
+        p, n = self.coverage(key), self.answers(key)
+        if 0.0 < p < 1.0:
+            n = min(n, math.ceil(p * (1 - p) / max(1e-12, self.error(key) ** 2)))
+        else:
+            n = len(self.of[key])
+        k = round(p * n)
+        if below(k, n, 0.94) < 0.005:
+            return "below"
+        return "above" if k > 0 and below(k - 1, n, 0.96) > 0.995 else "meets"
 
     def share(self, row, scene, p, answer, interval, trials, truth_trials=TRUTH_TRIALS):
         """An interval of a share. Impossible ones, never seen in the truth, are not counted."""
@@ -132,7 +172,8 @@ def predicted(count, scene, truth):
         return run("predict", *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for j in pool.map(one, range(FIRST_SEED, FIRST_SEED + SEEDS)):
+        for j in pool.map(one, seeds_of("predict")):
+            count.next_pool()
             trials = j["first_runs"]
             answer, p = flat(j["final_gates"]), truth["final_gates"]
             count.add("predict: total variation", scene,
@@ -147,6 +188,8 @@ def predicted(count, scene, truth):
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
                     count.share("predict: where they leave", scene, q, place["share"], place["share_95"], trials)
+            count.add("predict: no assumption said to be wrong", scene,
+                      not any(check and check["wrong"] for check in j["assumptions"].values()))
 
 
 def simulated(count, scene, truth):
@@ -154,7 +197,8 @@ def simulated(count, scene, truth):
         return run("lattice", *SCENES[scene], "--trials", LATTICE_TRIALS, "--seed", seed)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for j in pool.map(one, range(FIRST_SEED, FIRST_SEED + LATTICE_SEEDS)):
+        for j in pool.map(one, seeds_of("lattice")):
+            count.next_pool()
             for e, interval in j["endings_95"].items():
                 count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS,
                             [limit / LATTICE_TRIALS for limit in interval], LATTICE_TRIALS)
@@ -165,7 +209,7 @@ def simulated(count, scene, truth):
 
 
 def unseen(count):
-    """As results/tree has them, its truth of 150 000 trials (40 000 of M and R)."""
+    """As results/tree has them, its truth of 150 000 trials (400 000 of M and R)."""
     truths = json.loads((ROOT / "results/tree/truth.json").read_text())
 
     def one(work):
@@ -177,29 +221,19 @@ def unseen(count):
             words = [w for s in starts for w in ("--start", ",".join(map(str, s)))]
             return scene, starts, run("predict", matrix, *words, "--seed", seed)
 
-    held = defaultdict(list)  # by scene: the share of each chain's starts that hold
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for scene, starts, j in pool.map(one, [(s, seed) for s, n in UNSEEN.items() for seed in range(101, 101 + n)]):
-            held[scene].append(0.0)
+        for scene, starts, j in pool.map(one, [(s, seed) for s in tree.SCENES for seed in seeds_of("unseen")]):
+            count.next_pool()
             for s, a in zip(starts, j["starts"]):
                 t = truths[f"{scene} {','.join(map(str, s))} many"]
                 p = [n / t["trials"] for n in t["final_gates"]]
                 answer = flat(a["final_gates"])
-                holds = tv(answer, p) <= math.hypot(a["error_95"], noise_tv(p, t["trials"]))
-                count.add("predict, unseen start: total variation", scene, holds)
-                held[scene][-1] += holds / len(starts)
+                count.add("predict, unseen start: total variation", scene,
+                          tv(answer, p) <= math.hypot(a["error_95"], noise_tv(p, t["trials"])))
                 noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / t["trials"] / len(p))
                 count.add("predict, unseen start: RMSE", scene,
                           rmse(answer, p) <= math.hypot(a["rmse_per_100_95"], noise))
                 gates_of(count, "predict, unseen start", scene, a, p, a["first_runs"], t["trials"])
-
-
-    with open(OUT / "unseen_chains.csv", "w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(["scene", "chains", "holds_percent", "standard_error_over_chains_points"])
-        for scene, of in held.items():
-            table.writerow([scene, len(of), f"{100 * statistics.mean(of):.1f}",
-                            f"{100 * statistics.stdev(of) / math.sqrt(len(of)):.1f}"])
 
 
 def endings_of(count, what, scene, shares, intervals, truth, trials):
@@ -216,6 +250,7 @@ def mean_of(count, row, scene, answer, interval, truth):
 
 def analyzed(count, scene, truth):
     for j in each("analyze", scene, "--accuracy", ACCURACY, "--runs", 0, "--paths", 1):
+        count.next_pool()
         runs = j["gate_runs"]
         endings_of(count, "analyze", scene, j["endings"], j["endings_95"], truth, runs)
         for cost, key in zip(COSTS, ("seconds", None, "work_J", "random_work_J", "lost_J")):
@@ -234,6 +269,7 @@ def analyzed(count, scene, truth):
 def validated(count, scene, truth):
     start = ("--start", "0,0,15") if scene in "ABC" else ()
     for j in each("validate", scene, "--accuracy", ACCURACY, "--trials", VALIDATE_TRIALS, "--null-draws", 199, *start):
+        count.next_pool()
         own = j["starts"][0]
         for kind, key, n in (("trials", "dynamics", VALIDATE_TRIALS), ("walks", "walks", VALIDATE_TRIALS),
                              ("chain", "exact", j["matrix"]["gate_runs"])):
@@ -249,12 +285,14 @@ def validated(count, scene, truth):
 def powered(count, scene, truth):
     """Its intervals are those of predict, number by number, which is all that is looked at."""
     for seed in seeds_of("power"):
+        count.next_pool()
         power, predict = (run(c, *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed) for c in ("power", "predict"))
         count.add("power: as predict's to the last bit", scene, power["endings_95"] == predict["endings_95"])
 
 
 def rare(count, scene, truth):
     for j in each("rare", scene, "--row", RARE_ROW, "--gate-runs", RARE_RUNS):
+        count.next_pool()
         for row, p in zip(j["rows"], truth["rows"]):
             count.share("rare: the chance of a row", scene, p, row["probability"], row["probability_95"],
                         j["split_trials"], MORE_TRUTH_TRIALS)
@@ -270,6 +308,7 @@ def built(count, scene, truth):
             return said, answer
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             for said, answer in pool.map(one, seeds_of("build")):
+                count.next_pool()
                 count.add("build: total variation", scene, tv(flat(answer["final_gates"]), truth["final_gates"]) <=
                           math.hypot(said["state_space"]["error_95"][0], noise_tv(truth["final_gates"], TRUTH_TRIALS)))
 
@@ -327,6 +366,7 @@ def imported(count, scene, truth):
 
 def of_chain(count, what, scene, j, truth, trials, truth_trials):
     """Total variation, endings and gates of a prediction, or of a chain with replicates of its matrix."""
+    count.next_pool()
     bar = j["error_95"] if "error_95" in j else j["matrix_sampling"]["total_variation_q95"]
     count.add(f"{what}: total variation", scene, tv(flat(j["final_gates"]), truth["final_gates"]) <=
               math.hypot(bar, noise_tv(truth["final_gates"], truth_trials)))
@@ -379,12 +419,19 @@ def measure(own, commands):
         else:
             for scene in SCENES if command in ALSO_LEGS else own:
                 COMMANDS[command](count, scene, truths[scene])
-    names = [*SCENES, "M", "R", "all"]
-    heads = ["interval", "program", "answers", *(f"{s}_percent" for s in names)]
-    version = subprocess.run([sys.argv[1], "--version"], capture_output=True, text=True, check=True).stdout.split("(")[1][:8]
-    share = lambda key: f"{100 * count.held[key] / count.of[key]:.1f}" if count.of[key] else ""
-    rows = {row: [row, version, count.of[row, "all"], *(share((row, s)) for s in names)]
-            for row in {row for row, _ in count.of}}
+    names = [*SCENES, "M", "R"]
+    heads = ["interval", "program", "pools", "answers", "holds_percent", "error_points", "verdict", "below_in",
+             *(f"{s}_percent" for s in names)]
+    said = subprocess.run([sys.argv[1], "--version"], capture_output=True, text=True, check=True).stdout
+    version = said.split("(")[1][:8]
+
+    def line(row):
+        key = (row, "all")
+        share = lambda scene: f"{100 * count.coverage((row, scene)):.1f}" if (row, scene) in count.of else ""
+        fall_short = [s for s in names if (row, s) in count.of and count.verdict((row, s)) == "below"]
+        return [row, version, len(count.of[key]), count.answers(key), share("all"), f"{100 * count.error(key):.1f}",
+                count.verdict(key), " ".join(fall_short), *map(share, names)]
+    rows = {row: line(row) for row in {row for row, _ in count.of}}
     path = OUT / "coverage.csv"
     if path.exists():
         with open(path, newline="") as file:
