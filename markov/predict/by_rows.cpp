@@ -57,6 +57,11 @@ class PredictionRows {
     tally_ = buffer_.take(tallies_);
     type_masks_ = buffer_.take(masks_);
     layout_.cover(0, field.columns - 1, 0, 0, whole_);
+    for (const int input : plan.sideways)
+      if (!sideways_.empty() && sideways_.back().last == input)
+        ++sideways_.back().last;
+      else
+        sideways_.push_back({input, input + 1});
     first_ = field.rows;
     for (const Start& s : starts) {
       starts_.emplace_back(field, s);
@@ -70,7 +75,7 @@ class PredictionRows {
   std::vector<StartTally> run() {
     for (std::int64_t row = first_; row < field_.rows; ++row) {
       look_at(row);
-      within_.clear();
+      clear_sideways(within_);
       apply_in_row(&RowStencils::first_sideways, entering_.front(), within_);
       if (!enter(row)) break;
       visits_.clear();
@@ -79,7 +84,7 @@ class PredictionRows {
         sum(row);
       else
         solve(plan_.chains[type], ways_[type]);
-      add(entering_.front(), visits_);
+      add(entering_.front(), visits_, {0, plan_.inputs});
       count(row);
       // Go on to the next row: entering_[k] now belongs to the row k above the next one, which
       // receives the mass that goes up k + 1 rows from this row.
@@ -158,9 +163,18 @@ class PredictionRows {
     for (const CellsOfType& cells : types_)
       apply(plan_.chains[cells.type].by_row->get().*stencil, cells, layout_.shifts(0), from, to);
   }
-  void add(Planes from, Planes to) const {
+  /// Adds the numbers of these inputs.
+  void add(Planes from, Planes to, const Range& inputs) const {
+    const std::ptrdiff_t at = inputs.first * stride_;
     for (const Range& r : whole_)
-      accumulate(from.data(), to.data(), plan_.inputs, stride_, r.first, r.last);
+      accumulate(from.data() + at, to.data() + at, static_cast<int>(inputs.last - inputs.first),
+                 stride_, r.first, r.last);
+  }
+  /// Clears the numbers of inputs entered within a row.
+  void clear_sideways(Planes planes) const {
+    for (const Range& inputs : sideways_)
+      std::fill_n(planes.data() + inputs.first * stride_, (inputs.last - inputs.first) * stride_,
+                  0.0);
   }
   /// The total of the tally for each start.
   [[nodiscard]] std::vector<double> totals() const {
@@ -250,8 +264,8 @@ class PredictionRows {
         any = true;
       }
       if (!any) return;
-      add(now_, visits_);
-      next_.clear();
+      for (const Range& inputs : sideways_) add(now_, visits_, inputs);
+      clear_sideways(next_);
       apply_in_row(&RowStencils::sideways, now_, next_);
       std::swap(now_, next_);
     }
@@ -411,6 +425,7 @@ class PredictionRows {
   Planes tally_;                  // by Tally
   Planes type_masks_;             // by type: 1 in the present row's cells of the type
   std::vector<Range> whole_;
+  std::vector<Range> sideways_;     // inputs entered within a row: only these walk on within it
   std::vector<CellsOfType> types_;  // types in the present row
   std::int64_t first_ = 0;          // first row with a start
   std::vector<StartTally> starts_;
