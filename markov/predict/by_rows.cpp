@@ -425,7 +425,8 @@ class PredictionRows {
   Planes tally_;                  // by Tally
   Planes type_masks_;             // by type: 1 in the present row's cells of the type
   std::vector<Range> whole_;
-  std::vector<Range> sideways_;     // inputs entered within a row: only these walk on within it
+  std::vector<Range> sideways_;     // inputs entered within a row; the others are 0 in within_,
+                                    // now_ and next_
   std::vector<CellsOfType> types_;  // types in the present row
   std::int64_t first_ = 0;          // first row with a start
   std::vector<StartTally> starts_;

@@ -10,11 +10,11 @@ for: added in squares to the half of the interval on the truth's side, or to the
 than ten trials are expected in what the answer was made from; an interval of such a share can only say "at most",
 and should hold more often.
 
-The answers of one command with one seed share its runs: they are one pool. The interval of a coverage counts pools
-(Korn and Graubard, Confidence intervals for proportions with small expected number of positive counts estimated from
-survey data, Surv. Methodol. 24, 1998).
+The answers of one command with one seed share its runs: they are one pool. The 99 % interval of a coverage takes pools,
+not answers, as independent (Korn and Graubard, Confidence intervals for proportions with small expected number of
+positive counts estimated from survey data, Surv. Methodol. 24, 1998). A kind *meets* if it contains some of 94 to 96 %.
 """
-import csv, importlib.util, json, math, os, random, subprocess, sys, tempfile
+import csv, importlib.util, json, math, os, random, statistics, subprocess, sys, tempfile
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -43,6 +43,8 @@ SEEDS_OF = {"predict": 130, "lattice": 200, "analyze": 60, "validate": 60, "powe
 LATTICE_TRIALS, VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 1000, 6, 100_000, 100_000
 RECORDED_BODIES, IMPORTED_RUNS = 400, 60  # bodies; counts in each row
 STRAIGHT_UP = "EN_12"  # the paper's bin of slow, straight entries from below
+# Rows that count no 95 % intervals.
+NO_INTERVALS = ("power: as", "predict: no assumption")
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
 
 
@@ -97,15 +99,46 @@ def more_truth_of(scene):
             "rows": [r["direct_entered"] / MORE_TRUTH_TRIALS for r in rows["rows"]]}
 
 
-def below(k, n, p):
-    """The probability of at most k of n."""
-    of = lambda i: math.exp(math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1)
-                            + i * math.log(p) + (n - i) * math.log1p(-p))
-    return min(1.0, math.fsum(of(i) for i in range(k + 1)))
+def beta_chance(x, a, b):
+    """The regularised incomplete beta function, by its continued fraction (Lentz's method)."""
+    if x > (a + 1) / (a + b + 2):
+        return 1 - beta_chance(1 - x, b, a)
+    if x <= 0:
+        return 0.0
+    tiny, c, fraction = 1e-300, 1.0, 1 / (1 - (a + b) * x / (a + 1))
+    d = fraction
+    for m in range(1, 10_000):
+        change = 1.0
+        for term in (m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+                     -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))):
+            d = 1 / ((1 + term * d) or tiny)
+            c = (1 + term / c) or tiny
+            change *= c * d
+        fraction *= change
+        if abs(change - 1) < 1e-13:
+            break
+    return fraction / a * math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b)
+                                   + a * math.log(x) + b * math.log1p(-x))
+
+
+def beta_quantile(level, a, b):
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if beta_chance(middle, a, b) < level else (low, middle)
+    return (low + high) / 2
+
+
+def t_995(freedom):
+    """The 99.5 % quantile of Student's t, by Cornish and Fisher's expansion."""
+    z = statistics.NormalDist().inv_cdf(0.995)
+    return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)
 
 
 class Count:
-    """Answers that hold, by kind, scene and pool."""
+    """Answers that hold, by kind and scene, and by pool."""
+
+    LEAST_POOLS = 20  # fewer tell nothing of the spread between pools
 
     def __init__(self):
         self.held, self.of = (defaultdict(lambda: defaultdict(int)) for _ in range(2))
@@ -115,33 +148,41 @@ class Count:
         self.pool += 1
 
     def add(self, row, scene, holds):
-        for key in ((row, scene), (row, "all")):
-            self.of[key][self.pool] += 1
-            self.held[key][self.pool] += bool(holds)
+        self.of[row, scene][self.pool] += 1
+        self.held[row, scene][self.pool] += bool(holds)
 
-    def answers(self, key):
-        return sum(self.of[key].values())
+    def line(self, row, names):
+        """Pools, answers, coverage with its interval, verdict, scenes whose coverage is below, coverage by scene."""
+        scenes = [s for s in names if (row, s) in self.of]
+        pools, answers, coverage, interval = self.interval(row, scenes)
+        percent = lambda share: "" if share is None else f"{100 * share:.1f}"
+        each = {s: self.interval(row, [s]) for s in scenes}
+        is_below = lambda limits: limits is not None and limits[1] < 0.94
+        verdict = ""
+        if interval and not row.startswith(NO_INTERVALS):
+            verdict = "below" if is_below(interval) else "above" if interval[0] > 0.96 else "meets"
+        low, high = interval or (None, None)
+        return [pools, answers, percent(coverage), percent(low), percent(high), verdict,
+                " ".join(s for s in scenes if verdict and is_below(each[s][3])),
+                *(percent(each[s][2]) if s in each else "" for s in names)]
 
-    def coverage(self, key):
-        return sum(self.held[key].values()) / self.answers(key)
-
-    def error(self, key):
-        """The standard error of the coverage over pools."""
-        p, pools = self.coverage(key), len(self.of[key])
-        squares = sum((self.held[key][i] - p * n) ** 2 for i, n in self.of[key].items())
-        return math.sqrt(squares * pools / max(1, pools - 1)) / self.answers(key)
-
-    def verdict(self, key):
-        """Where the 99 % interval of Clopper and Pearson lies, with as many independent answers as show this error."""
-        p, n = self.coverage(key), self.answers(key)
-        if 0.0 < p < 1.0:
-            n = min(n, math.ceil(p * (1 - p) / max(1e-12, self.error(key) ** 2)))
-        else:
-            n = len(self.of[key])
-        k = round(p * n)
-        if below(k, n, 0.94) < 0.005:
-            return "below"
-        return "above" if k > 0 and below(k - 1, n, 0.96) > 0.995 else "meets"
+    def interval(self, row, scenes):
+        """Pools, answers and coverage, with a 99 % interval of Korn and Graubard: that of Clopper and Pearson for as
+        many independent answers as have the same error. Scenes are strata."""
+        of, held = ([numbers[row, s] for s in scenes] for numbers in (self.of, self.held))
+        pools, answers = sum(map(len, of)), sum(sum(n.values()) for n in of)
+        p = sum(sum(h.values()) for h in held) / answers
+        if pools < self.LEAST_POOLS:
+            return pools, answers, p, None
+        squares = 0.0
+        for n, h in zip(of, held):
+            share, m = sum(h.values()) / sum(n.values()), len(n)
+            squares += sum((h[i] - share * n[i]) ** 2 for i in n) * m / max(1, m - 1)
+        like = p * (1 - p) * answers ** 2 / squares if squares > 0 else pools
+        like = min(answers, like * (t_995(answers - 1) / t_995(pools - len(scenes))) ** 2)
+        k = p * like
+        return pools, answers, p, (beta_quantile(0.005, k, like - k + 1) if k > 0 else 0.0,
+                                   beta_quantile(0.995, k + 1, like - k) if k < like else 1.0)
 
     def share(self, row, scene, p, answer, interval, trials, truth_trials=TRUTH_TRIALS):
         """An interval of a share. Impossible ones, never seen in the truth, are not counted."""
@@ -402,6 +443,17 @@ def is_made_by(commands, row):
 
 
 def measure(own, commands):
+    names = [*SCENES, "M", "R"]
+    heads = ["interval", "program", "pools", "answers", "holds_percent", "low_99_percent", "high_99_percent", "verdict",
+             "below_in", *(f"{s}_percent" for s in names)]
+    table_path = OUT / "coverage.csv"
+    kept = []
+    if table_path.exists() and set(commands) != set(COMMANDS):
+        with open(table_path, newline="") as file:
+            table = csv.DictReader(file)
+            if table.fieldnames != heads:
+                sys.exit(f"{table_path} has other columns: make it anew with all commands")
+            kept = [r for r in table if not is_made_by(commands, r["interval"])]
     path = OUT / "truth.json"
     truths = json.loads(path.read_text()) if path.exists() else {}
     for scene in SCENES:
@@ -419,25 +471,11 @@ def measure(own, commands):
         else:
             for scene in SCENES if command in ALSO_LEGS else own:
                 COMMANDS[command](count, scene, truths[scene])
-    names = [*SCENES, "M", "R"]
-    heads = ["interval", "program", "pools", "answers", "holds_percent", "error_points", "verdict", "below_in",
-             *(f"{s}_percent" for s in names)]
     said = subprocess.run([sys.argv[1], "--version"], capture_output=True, text=True, check=True).stdout
     version = said.split("(")[1][:8]
-
-    def line(row):
-        key = (row, "all")
-        share = lambda scene: f"{100 * count.coverage((row, scene)):.1f}" if (row, scene) in count.of else ""
-        fall_short = [s for s in names if (row, s) in count.of and count.verdict((row, s)) == "below"]
-        return [row, version, len(count.of[key]), count.answers(key), share("all"), f"{100 * count.error(key):.1f}",
-                count.verdict(key), " ".join(fall_short), *map(share, names)]
-    rows = {row: line(row) for row in {row for row, _ in count.of}}
-    path = OUT / "coverage.csv"
-    if path.exists():
-        with open(path, newline="") as file:
-            kept = [r for r in csv.DictReader(file) if not is_made_by(commands, r["interval"])]
-            rows = {r["interval"]: [r.get(head, "") for head in heads] for r in kept} | rows
-    with open(path, "w", newline="") as file:
+    rows = {row: [row, version, *count.line(row, names)] for row in {row for row, _ in count.of}}
+    rows = {r["interval"]: [r[head] for head in heads] for r in kept} | rows
+    with open(table_path, "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(heads)
         table.writerows(rows[row] for row in sorted(rows))
