@@ -3,9 +3,10 @@
 """How accurate chains of trees are, at what cost, and whether their error bars hold.
 
 study.py GATEWALK DIR [SCENE...]: writes points.csv and summary.txt into DIR; points of scenes that are
-not named stay (-: of all, the summary is made again). One thread; method moreau, whose runs are the cheapest, so that chains and bars weigh
-the most. Truth: the final gates of many full trials of other seeds, whose noise is taken out of errors
-in squares; truth.json in DIR keeps them, and those that it lacks are run (another half an hour for all).
+not named stay (-: of all, the summary is made again). One thread; method moreau, whose runs are the
+cheapest, so that chains and bars weigh the most. Truth: the final gates of many full trials of other seeds,
+whose noise is taken out of errors in squares; truth.json in DIR keeps them, and those that it lacks are run
+(another half an hour for all).
 """
 import csv, json, math, random, subprocess, sys, tempfile, time
 from collections import defaultdict
@@ -235,12 +236,13 @@ def summary(rows):
         by = [[math.exp(mean(points[s, a][i] for s in starts)) for i in range(3)] for a in PLAN[scene]["seeds"]]
         lines.append(f"{scene}: slope {slope:.2f}; " + ", ".join(f"{n:.0f} {e:.4f} {d:.0f}" for n, e, d in by))
     tree = [r for r in rows if r["kind"] == "tree"]
-    lines += ["", f"error bars hold in {100 * covered(tree):.1f} % of {len(tree)} answers, by accuracy: " +
-              ", ".join(f"{a}: {100 * covered([r for r in tree if r['accuracy'] == a]):.1f} %" for a in PLAN["A"]["seeds"])]
+    lines += ["", f"error bars hold in {100 * covered(tree):.1f} % of {len(tree)} answers, by accuracy: " + ", ".join(
+        f"{a}: {100 * covered([r for r in tree if r['accuracy'] == a]):.1f} %" for a in PLAN["A"]["seeds"])]
     lines += ["", "ANY START: build --accuracy ... --starts all, predictions from starts that the chain does not",
               "know. Cost ratio: of direct simulation over one build and a hundred predictions, everything",
               "counted, at the same mean error; in brackets with the runs of method stable.",
-              "scene asked  error   largest  build runs, s    a start's runs, s   cost ratio (of %d starts: 0.02)" % KNOWN]
+              "scene asked  error   largest  build runs, s    a start's runs, s   "
+              "cost ratio (of %d starts: 0.02)" % KNOWN]
     for scene in SCENES:
         for accuracy, count, _ in PLAN[scene]["builds"]:
             if (accuracy, count) == (0.06, KNOWN):
