@@ -53,7 +53,7 @@ PLAN = defaultdict(lambda: dict(
     seeds={0.04: 24, 0.02: 12, 0.01: 4},
     builds=[(0.06, 100, 2), (0.03, 100, 1), (0.02, KNOWN, 1), (0.06, KNOWN, 6)]))
 for s in "MR":  # looked at less
-    PLAN[s] = dict(one=[(9001, 100_000)], many=[(9003, 400_000)], seeds={0.04: 12, 0.02: 6},
+    PLAN[s] = dict(one=[(9001, 100_000)], many=[(9003, 40_000)], seeds={0.04: 12, 0.02: 6},
                    builds=[(0.06, KNOWN, 6)])
 
 
