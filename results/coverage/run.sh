@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Do 95 % intervals hold the truth 95 times in 100? Counted over many seeds, for each kind of interval by itself.
-#   results/coverage/run.sh [GATEWALK [COMMAND...]]      about 2 hours on two cores (20 minutes more without truth.json)
+#   results/coverage/run.sh [GATEWALK [COMMAND...]]      about 2 hours on two cores (40 minutes more without truth.json)
 # Needs python3. With commands (predict, lattice, analyze, validate, power, rare, build, recorded, imported, unseen)
 # only their rows are made anew; each row names the program that made it.
 # Writes coverage.csv, manifest.txt; truth.json if it is not there.
