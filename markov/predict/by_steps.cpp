@@ -41,10 +41,10 @@ class Steps {
     const std::ptrdiff_t colours = layout_->colours(),
                          tallies = kTallyMoved + std::ssize(plan.moves),
                          types = plan.chains.size() > 1 ? std::ssize(plan.chains) : 0;
-    buffer_.emplace((2 + colours) * plan.inputs + tallies + types * colours, stride_);
+    buffer_.emplace(2 * plan.inputs + (1 + colours) * tallies + types * colours, stride_);
     now_ = buffer_->take(plan.inputs), next_ = buffer_->take(plan.inputs);
-    visits_ = buffer_->take(colours * plan.inputs);
     tally_ = buffer_->take(tallies);
+    for (int colour = 0; colour < colours; ++colour) ended_.push_back(buffer_->take(tallies));
     if (types > 0) mark_types(buffer_->take(types * colours));
     colour_ = place(0, starts.front().column, starts.front().row).colour;
   }
@@ -74,17 +74,17 @@ class Steps {
     for (int steps = 1; any_left(max_cells, tolerance, steps, steps == max_steps); ++steps) {
       for (StartTally& w : starts_) w.steps += w.over ? 0 : 1;
       if (steps + 1 == max_cells) {
-        count(now_.data(), true);
+        apply_by_type(&PreparedChain::ends, layout_->identity(colour_), now_.data(), tally_, false);
+        count(tally_, true);
         break;
       }
-      for (const Range& r : window())
-        accumulate(now_.data(), visits(), plan_.inputs, stride_, r.first, r.last);
+      apply_by_type(&PreparedChain::ends, layout_->identity(colour_), now_.data(), ended(), true);
       step();
       // A step overwrites every plane to which some move leads. The first draws may have put mass
       // into other planes (an exit of the start's input alone), which are emptied here.
       for (const std::ptrdiff_t at : std::exchange(first_draws, {})) next_.data()[at] = 0.0;
     }
-    for (colour_ = 0; colour_ < layout_->colours(); ++colour_) count(visits(), false);
+    for (colour_ = 0; colour_ < layout_->colours(); ++colour_) count(ended(), false);
     return std::move(starts_);
   }
 
@@ -93,8 +93,8 @@ class Steps {
                                     std::int64_t row) const {
     return layout_->place(start, column - box_.left, row - box_.bottom);
   }
-  /// The visits of cells of the present colour.
-  [[nodiscard]] double* visits() { return visits_.data() + colour_ * plan_.inputs * stride_; }
+  /// The mass that ended in cells of the present colour.
+  [[nodiscard]] Planes ended() const { return ended_[static_cast<std::size_t>(colour_)]; }
   void grow() {
     Window w = window_;
     for (const Move& m : plan_.moves)
@@ -112,14 +112,17 @@ class Steps {
     cover(window_.bottom, window_.top, ranges);
     return ranges;
   }
-  /// Applies one stencil of each chain in the cells of its type; `to` has `planes` planes.
+  /// Applies one stencil of each chain in the cells of its type. `add`: to what the planes hold.
   void apply_by_type(Stencil PreparedChain::*stencil, const Shift* shifts, const double* from,
-                     double* to, std::ptrdiff_t planes) {
+                     const Planes& planes, bool add) {
     const Stencil& first = plan_.chains.front().*stencil;
     const bool single = plan_.chains.size() == 1;
+    double* const to = planes.data();
     // The first pass may not overwrite all planes.
-    const bool add = !single || first.passes.size() > 1;
-    if (add) std::fill_n(to, planes * stride_, 0.0);
+    if (!add && (!single || first.passes.size() > 1)) {
+      planes.clear();
+      add = true;
+    }
     if (single) {
       apply_stencil(first, shifts, stride_, nullptr, window(), from, to, add);
       return;
@@ -143,8 +146,7 @@ class Steps {
   }
 
   void step() {
-    apply_by_type(&PreparedChain::moves, layout_->shifts(colour_), now_.data(), next_.data(),
-                  plan_.inputs);
+    apply_by_type(&PreparedChain::moves, layout_->shifts(colour_), now_.data(), next_, false);
     std::swap(now_, next_);
     if (layout_->colours() == 2) colour_ = 1 - colour_;
     grow();
@@ -162,18 +164,12 @@ class Steps {
     }
   }
 
-  void tally(Stencil PreparedChain::*stencil, const double* visitors) {
-    apply_by_type(stencil, layout_->identity(colour_), visitors, tally_.data(),
-                  kTallyMoved + std::ssize(plan_.moves));
-  }
-
-  /// Counts the draws in cells of the present colour.
-  void count(const double* visitors, bool is_last) {
-    tally(&PreparedChain::ends, visitors);
+  /// Counts the draws in cells of the present colour from the planes of a tally.
+  void count(const Planes& tally, bool is_last) {
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       if (is_last && starts_[j].over) continue;
       each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
-        starts_[j].count(field_, plan_.moves, column, row, is_last, tally_.data() + at, stride_);
+        starts_[j].count(field_, plan_.moves, column, row, is_last, tally.data() + at, stride_);
       });
     }
   }
@@ -181,7 +177,9 @@ class Steps {
   /// Whether any walks go on; starts without such walks are closed.
   bool any_left(int max_cells, double tolerance, int steps, bool stop) {
     bool any = false;
-    if (max_cells == 0) tally(&PreparedChain::walking, now_.data());
+    if (max_cells == 0)
+      apply_by_type(&PreparedChain::walking, layout_->identity(colour_), now_.data(), tally_,
+                    false);
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       StartTally& w = starts_[j];
       if (w.over) continue;
@@ -223,7 +221,7 @@ class Steps {
     each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
       const PreparedChain& chain = plan_.at(column, row);
       for (const int input : chain.unsampled)
-        visits()[input * stride_ + at] += now[input * stride_ + at];
+        ended().data()[kTallyUnsampled * stride_ + at] += now[input * stride_ + at];
       for (const int input : chain.walking_inputs)
         starts_[j].remainder += now[input * stride_ + at];
       for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input) now[input * stride_ + at] = 0.0;
@@ -257,9 +255,9 @@ class Steps {
   int colour_ = 0;  // colour of the cells with mass
   std::ptrdiff_t stride_ = 0;
   std::optional<PlaneBuffer> buffer_;
-  Planes now_, next_;  // by input: mass now and after the next step
-  Planes visits_;      // (colours x inputs)
-  Planes tally_;       // by Tally
+  Planes now_, next_;            // by input: mass now and after the next step
+  Planes tally_;                 // by Tally, of the present mass
+  std::vector<Planes> ended_{};  // by colour: by Tally, of all steps
   // The next members are for fields with several types of cell.
   Planes type_masks_;            // (types x colours): 1 in cells of the type, else 0
   std::vector<char> is_in_row_;  // (types x rows)

@@ -77,8 +77,11 @@ Layout::Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>&
     lowest = std::min(lowest, offset_of(m));
     highest = std::max(highest, offset_of(m));
   }
-  origin_ = (lanes_up(-lowest) + kLanes) * colours;
-  stride_ = lanes_up((origin_ + rows * pitch_ + highest) / colours) + 2 * kLanes;
+  // Whole registers of cells, moved by the largest shift either way, stay in their plane.
+  const auto places = [&](std::ptrdiff_t cells) { return (cells + colours - 1) / colours; };
+  const std::ptrdiff_t before = lanes_up(places(-lowest));
+  origin_ = before * colours;
+  stride_ = lanes_up(before + places(rows * pitch_)) + lanes_up(places(highest));
   // An odd number of registers keeps equal places of neighbouring planes in different cache sets.
   if (stride_ / kLanes % 2 == 0) stride_ += kLanes;
 
