@@ -21,6 +21,11 @@ class EntryTable {
 
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
   [[nodiscard]] std::size_t coordinates() const { return coordinates_; }
+  /// Reserves memory for this number of entries.
+  void reserve(std::size_t entries) {
+    faces_.reserve(entries);
+    at_.reserve(entries * coordinates_);
+  }
   void push_back(const Entry& entry) {
     faces_.push_back(static_cast<std::uint16_t>(entry.face));
     at_.insert(at_.end(), entry.at.data(), entry.at.data() + coordinates_);

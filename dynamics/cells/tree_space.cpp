@@ -74,15 +74,22 @@ class Grower {
     return axes;
   }
 
-  /// Partitions the entries at a cut near the median of an axis and returns the number of entries
-  /// below. Returns 0 if equal values leave no cut with enough entries on both sides.
-  [[nodiscard]] std::size_t halve(Entries entries, std::size_t axis) const {
+  struct Halves {
+    std::size_t below = 0;        // number of entries below the cut; 0: there is no cut
+    double from = 0.0, to = 0.0;  // largest value below, least value above
+  };
+
+  /// Partitions the entries at a cut near the median of an axis. There is no cut if equal values
+  /// leave none with enough entries on both sides.
+  [[nodiscard]] Halves halve(Entries entries, std::size_t axis) const {
     const std::size_t n = entries.size();
     const auto middle = entries.begin() + static_cast<std::ptrdiff_t>(n / 2);
     std::nth_element(entries.begin(), middle, entries.end(), less_along(axis));
     const double median = middle->at[axis];
-    if (std::max_element(entries.begin(), middle, less_along(axis))->at[axis] < median)
-      return n / 2;
+    const auto largest = [&](auto end) {
+      return std::max_element(entries.begin(), end, less_along(axis))->at[axis];
+    };
+    if (const double from = largest(middle); from < median) return {n / 2, from, median};
     const auto from =
         std::partition(entries.begin(), middle, [&](const Seen& e) { return e.at[axis] < median; });
     const auto to =
@@ -93,23 +100,21 @@ class Grower {
       return below >= per_leaf_ && n - below >= per_leaf_;
     };
     const bool low_is_nearer = n / 2 - low <= high - n / 2;
-    if (fits(low) && (low_is_nearer || !fits(high))) return low;
-    return fits(high) ? high : 0;
+    if (fits(low) && (low_is_nearer || !fits(high))) return {low, largest(from), median};
+    if (!fits(high)) return {};
+    return {high, median, std::min_element(to, entries.end(), less_along(axis))->at[axis]};
   }
 
   void add(Entries entries) {
     if (entries.size() >= 2 * per_leaf_)
       for (const std::size_t axis : axes_by_spread(entries)) {
-        const std::size_t below = halve(entries, axis);
-        if (below == 0) continue;
-        const Entries low = entries.first(below), high = entries.subspan(below);
-        const double from = std::max_element(low.begin(), low.end(), less_along(axis))->at[axis],
-                     to = std::min_element(high.begin(), high.end(), less_along(axis))->at[axis];
+        const auto [below, from, to] = halve(entries, axis);
         const double cut = 0.5 * from + 0.5 * to;
-        if (!(from < cut && cut < to)) continue;  // from and to are adjacent doubles
+        // There is also no cut between adjacent doubles.
+        if (below == 0 || !(from < cut && cut < to)) continue;
         tree_.nodes.push_back({static_cast<int>(axis), cut});
-        add(low);
-        add(high);
+        add(entries.first(below));
+        add(entries.subspan(below));
         return;
       }
     for (const Seen& e : entries) state_of_[static_cast<std::size_t>(e.place)] = states_;

@@ -166,6 +166,12 @@ void each_entry(const RunPool& pool, TrialGroup group,
   });
 }
 
+std::int64_t kernel_runs(const RunPool& pool) {
+  std::int64_t runs = std::ssize(pool.scattered.each.passages);
+  for (const OwnRuns& s : pool.starts) runs += std::ssize(s.full.passages);
+  return runs;
+}
+
 std::int64_t Kernel::nonzeros() const {
   std::int64_t all = 0;
   for (const markov::Counts& c : counts) all += c.nonZeros();
@@ -178,6 +184,9 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   const Section& section = map.section;
   EntryTable entries(section);
   std::vector<std::uint8_t> types;
+  const auto counts = static_cast<std::size_t>(2 * kernel_runs(pool) / group.of);
+  entries.reserve(counts);
+  types.reserve(counts);
   each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     entries.push_back(entry);
     if (images[run.type] == 2) entries.push_back(mirrored(section, entry));
@@ -206,12 +215,10 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
     kernel.borrowers = Borrowers(section, runs, 2 * std::int64_t{least});
     add_borrowed(kernel, map, pool, group, entries, types, row, column);
   }
-  const auto seen_in = [&](const EntryTable& there, const std::vector<int>& states) {
-    if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
-  };
+  const bool of_all = group.of == 1;
   if (map.types.size() == 1) {
     kernel.counts.push_back(counted(row, column, kernel.space.size()));
-    seen_in(entries, row);
+    if (of_all) kernel.seen.emplace_back(kernel.space, entries, row);
     return kernel;
   }
   for (std::size_t type = 0; type < map.types.size(); ++type) {
@@ -219,11 +226,11 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
     std::vector<int> from, to;
     for (std::size_t i = 0; i < types.size(); ++i) {
       if (types[i] != type) continue;
-      there.push_back(entries[i]);
+      if (of_all) there.push_back(entries[i]);
       from.push_back(row[i]);
       to.push_back(column[i]);
     }
-    seen_in(there, from);
+    if (of_all) kernel.seen.emplace_back(kernel.space, there, from);
     kernel.counts.push_back(
         counts_of_type(kernel.space, std::move(from), to, least, kernel.shared_by.emplace_back()));
   }

@@ -112,6 +112,9 @@ struct Kernel {
   }
 };
 
+/// Number of runs behind the rows of kernels.
+[[nodiscard]] std::int64_t kernel_runs(const RunPool& pool);
+
 /// Counts the runs of one group of the trials, except the starts' own first runs and runs that
 /// broke. In symmetric cells a run counts twice, with its mirror image. Leaves are larger than
 /// `per_leaf` if there would be more than kMostStates. With several types of cells, leaves with

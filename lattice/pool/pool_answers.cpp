@@ -45,13 +45,6 @@ bool pays_adjoint(const dynamics::CellMap& map, const FieldParams& field, std::s
          4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
 }
 
-/// Number of runs behind the rows of kernels.
-std::int64_t kernel_runs(const RunPool& pool) {
-  std::int64_t runs = std::ssize(pool.scattered.each.passages);
-  for (const OwnRuns& s : pool.starts) runs += std::ssize(s.full.passages);
-  return runs;
-}
-
 /// Whether adjoints fit into memory for chains with leaves of this many entries: the numbers that
 /// they keep (about 2 per cell and state) and need meanwhile (about 8).
 bool fits_adjoint(const RunPool& pool, const FieldParams& field, int leaf) {
