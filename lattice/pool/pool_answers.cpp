@@ -191,16 +191,15 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                     seed);
 }
 
-GroupedMaps PoolAnswers::maps_of(std::size_t start) const {
-  GroupedMaps maps{whole.final[start].final_cells, {}, whole.final[start].unsampled()};
-  for (const FinalDistribution& group : groups[start]) maps.groups.push_back(group.final_cells);
+GroupedMaps PoolAnswer::maps() const {
+  GroupedMaps maps{whole.final_cells, {}, whole.unsampled()};
+  for (const FinalDistribution& group : groups) maps.groups.push_back(group.final_cells);
   return maps;
 }
 
-std::optional<GroupedMaps> PoolAnswers::maps_of_small_leaves(std::size_t start) const {
-  if (small_leaves.empty() || !small_leaves[start]) return {};
-  const auto& [all, of_groups] = *small_leaves[start];
-  if (all.final_cells.size() == 0) return {};
+std::optional<GroupedMaps> PoolAnswer::maps_of_small_leaves() const {
+  if (!small_leaves || small_leaves->whole.final_cells.size() == 0) return {};
+  const auto& [all, of_groups] = *small_leaves;
   GroupedMaps maps{
       all.final_cells, {}, all.endings[static_cast<std::size_t>(markov::Ending::unsampled)]};
   for (const SmallLeaves& group : of_groups) maps.groups.push_back(group.final_cells);
@@ -260,19 +259,19 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
                         field_.start_row, field_.max_gates);
     });
   const std::size_t n = starts.size();
-  PoolAnswers said{.whole = {},
-                   .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
-                   .kernels = {},
-                   .unseen = {},
+  const bool with_kernels = !by_walks_ || chains_.front().adjoint;
+  PoolAnswers said{.starts = std::vector<PoolAnswer>(n),
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros(),
                    .coordinates = coordinates_cut(chains_.front().kernel.space)};
-  for (const FirstRow& s : starts) {
-    const auto* const own = std::get_if<const OwnRuns*>(&s);
-    said.unseen.push_back(own ? missing_mass(chains_.front().kernel, map_, field_, **own) : 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    PoolAnswer& of = said.starts[i];
+    of.groups.resize(kTrialGroups);
+    if (with_kernels) of.kernels.resize(kTrialGroups);
+    of.pool_trials = pool.trials();
+    if (const auto* const own = std::get_if<const OwnRuns*>(&starts[i]))
+      of.unseen = missing_mass(chains_.front().kernel, map_, field_, **own);
   }
-  const bool with_kernels = !by_walks_ || chains_.front().adjoint;
-  if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
     std::vector<TrialGroup> groups;
@@ -282,14 +281,12 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
         answers(chain, g,
                 first_rows(chain.kernel, map_, pool, starts,
                            map_.type_of(field_.start_column(), field_.start_row), groups));
-    if (g < 0) {
-      said.whole = std::move(found);
-      return;
-    }
+    if (g < 0) said.walks = found.walks;
+    const auto at = static_cast<std::size_t>(g);
     for (std::size_t i = 0; i < n; ++i) {
-      said.groups[i][static_cast<std::size_t>(g)] = std::move(found.final[i]);
-      if (with_kernels)
-        said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
+      PoolAnswer& of = said.starts[i];
+      (g < 0 ? of.whole : of.groups[at]) = std::move(found.final[i]);
+      if (g >= 0 && with_kernels) of.kernels[at] = std::move(found.final[n + i]);
     }
   });
   return said;
@@ -298,7 +295,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
 bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
                              PoolAnswers& said) const {
   const int leaf = ending_leaf(pool, ending_per_leaf_);
-  if (said.whole.walks > 0 || leaf >= ending_per_leaf_) return false;
+  if (said.walks > 0 || leaf >= ending_per_leaf_) return false;
   std::array<std::vector<std::optional<SmallLeaves>>, kTrialGroups + 1> found;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
@@ -306,8 +303,8 @@ bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& s
         by_small_leaves(map_, field_, pool, starts, leaf, group);
   });
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    std::optional<PoolSmallLeaves>& of = said.small_leaves.emplace_back();
     if (!found[0][i]) continue;
+    auto& of = said.starts[i].small_leaves;
     of = {.whole = *found[0][i], .groups = {}};
     for (std::size_t g = 0; g < kTrialGroups; ++g) of->groups[g] = *found[g + 1][i];
   }

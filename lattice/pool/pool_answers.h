@@ -68,26 +68,30 @@ struct PoolSmallLeaves {
   std::array<SmallLeaves, kTrialGroups> groups;
 };
 
-/// Predictions for each start by all trials, and by each group of the trials.
+/// The predictions for one start by all trials, and by each group of the trials.
+struct PoolAnswer {
+  markov::FinalDistribution whole{};
+  std::vector<markov::FinalDistribution> groups{};  // (kTrialGroups)
+  /// (kTrialGroups) Predictions of each group's kernel with the first runs of all trials: their
+  /// spread shows the kernel's part of the error. Empty if answers come from Monte Carlo walks.
+  std::vector<markov::FinalDistribution> kernels{};
+  double unseen = 0.0;           // missing_mass()
+  std::int64_t pool_trials = 0;  // number of trials that the pool had
+  /// Endings from small leaves, once they are asked for (PoolChains::add_endings). Without them the
+  /// endings are those of `whole` and `groups`.
+  std::optional<PoolSmallLeaves> small_leaves{};
+
+  /// Final gates; and by the chain of small leaves, nullopt if it gives none.
+  [[nodiscard]] GroupedMaps maps() const;
+  [[nodiscard]] std::optional<GroupedMaps> maps_of_small_leaves() const;
+};
+
 struct PoolAnswers {
-  KernelAnswers whole;
-  std::vector<std::vector<markov::FinalDistribution>> groups;  // (starts x kTrialGroups)
-  /// (starts x kTrialGroups) Predictions of each group's kernel with the first runs of all trials:
-  /// their spread shows the kernel's part of the error. Empty if answers come from Monte Carlo
-  /// walks.
-  std::vector<std::vector<markov::FinalDistribution>> kernels;
-  std::vector<double> unseen;  // (starts) missing_mass()
-  /// (starts) Endings from small leaves, once they are asked for (PoolChains::add_endings); empty
-  /// if answers come from Monte Carlo walks. Without them the endings are those of `whole` and
-  /// `groups`.
-  std::vector<std::optional<PoolSmallLeaves>> small_leaves{};
+  std::vector<PoolAnswer> starts{};
+  std::int64_t walks = 0;  // see KernelAnswers
   int states = 0;
   std::int64_t nonzeros = 0;
   int coordinates = 0;  // number of coordinates by which the states differ
-
-  /// Final gates of one start; and by the chain of small leaves, nullopt if it gives none.
-  [[nodiscard]] GroupedMaps maps_of(std::size_t start) const;
-  [[nodiscard]] std::optional<GroupedMaps> maps_of_small_leaves(std::size_t start) const;
 };
 
 /// The chains of a pool that grows. Kernels are kept while only first runs are added.
@@ -106,9 +110,9 @@ class PoolChains {
   [[nodiscard]] int per_leaf() const { return per_leaf_; }
 
   [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<FirstRow>& starts);
-  /// Adds the endings from small leaves to answers for these starts, and returns true; false if
-  /// the answers come from Monte Carlo walks, or ending_leaf() is no smaller. The chains are made
-  /// anew with each call.
+  /// Adds the endings from small leaves to exact answers for these starts, and returns true; false
+  /// if the answers come from Monte Carlo walks, or ending_leaf() is no smaller. The chains are
+  /// made anew with each call.
   [[nodiscard]] bool add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
                                  PoolAnswers& said) const;
 

@@ -46,28 +46,29 @@ void widen(std::array<double, 2>& interval, double share) {
 }
 
 /// The chain's answer for start number `i`, with error bars. `first_runs`: behind the chain's first
-/// row; `pooled`: trials in the pool.
-StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std::int64_t pooled,
-                         const PoolAnswers& said, std::size_t i, std::uint64_t seed) {
+/// row.
+StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, const PoolAnswers& said,
+                         std::size_t i, std::uint64_t seed) {
+  const PoolAnswer& of = said.starts[i];
   StartAnswer a;
   a.first_runs = first_runs;
-  a.unseen = said.unseen[i];
-  a.final = said.whole.final[i];
-  std::vector<FinalDistribution> groups = said.groups[i];
-  const std::int64_t behind = std::min(first_runs, pooled);
-  const double chance = chance_of_walks(a.final, said.whole.walks);
+  a.unseen = of.unseen;
+  a.final = of.whole;
+  std::vector<FinalDistribution> groups = of.groups;
+  const std::int64_t behind = std::min(first_runs, of.pool_trials);
+  const double chance = chance_of_walks(a.final, said.walks);
   a.error = GroupSpread(a.final, groups, said.coordinates).error(behind, seed);
   a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + a.unseen);
-  a.kernel_error_95 = said.kernels.empty()
+  a.kernel_error_95 = of.kernels.empty()
                           ? a.error.total_variation
-                          : std::min(1.0, GroupSpread(a.final, said.kernels[i], said.coordinates)
-                                                  .error(pooled, seed)
+                          : std::min(1.0, GroupSpread(a.final, of.kernels, said.coordinates)
+                                                  .error(of.pool_trials, seed)
                                                   .total_variation +
                                               a.unseen);
-  if (!said.small_leaves.empty() && said.small_leaves[i]) {
-    a.final = with_endings(std::move(a.final), said.small_leaves[i]->whole.endings);
+  if (of.small_leaves) {
+    a.final = with_endings(std::move(a.final), of.small_leaves->whole.endings);
     for (std::size_t g = 0; g < groups.size(); ++g)
-      groups[g] = with_endings(std::move(groups[g]), said.small_leaves[i]->groups[g].endings);
+      groups[g] = with_endings(std::move(groups[g]), of.small_leaves->groups[g].endings);
   }
   const GroupSpread spread(a.final, groups, said.coordinates);
   a.endings = spread.endings_95(behind);
@@ -94,9 +95,9 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
 
 /// The chain's answer for start number `i`, or the shares of the start's own trials if these are
 /// more precise.
-StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t pooled,
-                      const PoolAnswers& said, std::size_t i, std::uint64_t seed) {
-  StartAnswer a = chain_answer(field, s.first_runs(), pooled, said, i, seed);
+StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, const PoolAnswers& said,
+                      std::size_t i, std::uint64_t seed) {
+  StartAnswer a = chain_answer(field, s.first_runs(), said, i, seed);
   a.start = s.start;
   a.trials = std::ssize(s.full.endings);
   if (a.trials == 0) return a;
@@ -171,6 +172,7 @@ class PredictionRun {
         chains_(problem.map(), problem.field, options.per_leaf, starts.size(), options.seed) {
     place(starts);
     result_.starts.resize(starts.size());
+    said_.starts.resize(starts.size());
     open_ = all();
   }
 
@@ -205,18 +207,17 @@ class PredictionRun {
 
   [[nodiscard]] std::vector<AssumptionCheck> look_at_assumptions() const {
     if (by_walks_) return {};
-    const std::vector<FirstRow> rows = rows_asked();
-    std::vector<FirstRow> by_chain;
-    std::size_t last = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!result_.starts[asked_[i]].from_trials) by_chain.push_back(rows[last = i]);
+    std::vector<std::size_t> by_chain;
+    for (const std::size_t k : all())
+      if (!result_.starts[k].from_trials) by_chain.push_back(k);
     std::optional<GroupedMaps> chain, small_leaves;
     if (by_chain.size() == 1) {
-      chain = said_.maps_of(last);
-      small_leaves = said_.maps_of_small_leaves(last);
+      chain = said_.starts[by_chain.front()].maps();
+      small_leaves = said_.starts[by_chain.front()].maps_of_small_leaves();
     }
-    return check_assumptions(problem_.map(), problem_.field, pool_, by_chain, chains_.per_leaf(),
-                             said_.coordinates, options_.seed, std::move(chain), small_leaves);
+    return check_assumptions(problem_.map(), problem_.field, pool_, rows_of(by_chain),
+                             chains_.per_leaf(), said_.coordinates, options_.seed, std::move(chain),
+                             small_leaves);
   }
 
   [[nodiscard]] std::vector<std::size_t> all() const {
@@ -245,52 +246,60 @@ class PredictionRun {
   /// false if no more trials are wanted, or if they would not help.
   [[nodiscard]] bool ask() {
     // With the adjoint all starts cost as much as one. Closed starts are therefore asked again in
-    // each round (else only after the last), which corrects error bars that were small by chance.
+    // each round, which corrects error bars that were small by chance.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
-    asked_ = open_;
-    said_ = chains_.ask(pool_, rows_asked());
+    const std::vector<std::size_t> asked = open_;
+    all_asked_ = asked.size() == result_.starts.size();
+    PoolAnswers said = chains_.ask(pool_, rows_of(asked));
+    for (std::size_t i = 0; i < asked.size(); ++i)
+      said_.starts[asked[i]] = std::move(said.starts[i]);
+    said.starts = std::move(said_.starts);
+    said_ = std::move(said);
     result_.states = said_.states;
     result_.nonzeros = said_.nonzeros;
-    by_walks_ = said_.whole.walks > 0;
-    answer();
+    by_walks_ = said_.walks > 0;
+    answer(asked);
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
     });
-    if (open_.empty() && asked_.size() < result_.starts.size()) {
-      open_ = all();
-      return ask();
-    }
+    if (open_.empty() && must_ask_all()) return ask_all();
     // The walks have their own sampling error: if it makes up half of the error, more trials do not
     // help.
-    return !open_.empty() &&
-           std::all_of(said_.whole.final.begin(), said_.whole.final.end(),
-                       [&](const FinalDistribution& d) {
-                         return chance_of_walks(d, said_.whole.walks) < 0.5 * options_.accuracy;
-                       });
+    return !open_.empty() && std::none_of(asked.begin(), asked.end(), [&](std::size_t k) {
+      return chance_of_walks(said_.starts[k].whole, said_.walks) >= 0.5 * options_.accuracy;
+    });
   }
 
-  [[nodiscard]] std::vector<FirstRow> rows_asked() const {
+  /// All answers of few starts come from the last pool. Many starts keep the answers that closed
+  /// them: each time that all are asked by the adjoint, a prediction takes about a fifth longer,
+  /// and some bars are slightly too large again.
+  [[nodiscard]] bool must_ask_all() const {
+    return !all_asked_ && !chains_.by_adjoint(pool_, result_.starts.size());
+  }
+  bool ask_all() {
+    open_ = all();
+    return ask();
+  }
+
+  [[nodiscard]] std::vector<FirstRow> rows_of(const std::vector<std::size_t>& starts) const {
     std::vector<FirstRow> rows;
-    for (const std::size_t k : asked_) rows.emplace_back(&pool_.starts[places_[k]]);
+    for (const std::size_t k : starts) rows.emplace_back(&pool_.starts[places_[k]]);
     return rows;
   }
 
-  /// Makes the answers for the starts asked from what the chains said.
-  void answer() {
-    const std::int64_t pooled = pool_.trials();
-    tbb::parallel_for(std::size_t{0}, asked_.size(), [&](std::size_t i) {
-      result_.starts[asked_[i]] = answer_of(problem_.field, pool_.starts[places_[asked_[i]]],
-                                            pooled, said_, i, options_.seed);
+  /// Makes the answers for these starts from what the chains said.
+  void answer(const std::vector<std::size_t>& starts) {
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+      const std::size_t k = starts[i];
+      result_.starts[k] =
+          answer_of(problem_.field, pool_.starts[places_[k]], said_, k, options_.seed);
     });
   }
 
   /// Adds the endings from small leaves to all answers.
   void add_endings() {
-    if (asked_.size() < result_.starts.size()) {
-      open_ = all();
-      static_cast<void>(ask());
-    }
-    if (chains_.add_endings(pool_, rows_asked(), said_)) answer();
+    if (must_ask_all()) ask_all();
+    if (chains_.add_endings(pool_, rows_of(all()), said_)) answer(all());
   }
 
   /// The part of the error that comes from the first runs.
@@ -405,11 +414,11 @@ class PredictionRun {
   const Work& work_;
   PoolRunner runner_;
   PoolChains chains_;
-  bool by_walks_ = false;             // whether the current answers come from walks
-  std::vector<std::size_t> places_;   // indices of the starts in the pool
-  std::vector<std::size_t> open_;     // starts whose answers are not precise enough yet
-  std::vector<std::size_t> asked_{};  // starts of the last answers
-  PoolAnswers said_{};                // the chains' last answers, for the starts asked
+  bool all_asked_ = false;           // whether the last answers were those of all starts
+  bool by_walks_ = false;            // whether the current answers come from walks
+  std::vector<std::size_t> places_;  // indices of the starts in the pool
+  std::vector<std::size_t> open_;    // starts whose answers are not precise enough yet
+  PoolAnswers said_{};               // what the chains last said of each start
   PooledPrediction result_;
 };
 
@@ -494,18 +503,20 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   PooledPrediction result;
   const std::vector<FirstRow> rows = rows_of(pool, starts);
   PoolAnswers said;
+  KernelAnswers whole;  // if bodies are too few for error bars
   if (bodies >= kLeastBodies) {
     PoolChains chains(map, problem.field, per_leaf, starts.size(), seed);
     said = chains.ask(pool, rows);
     static_cast<void>(chains.add_endings(pool, rows, said));
+    for (PoolAnswer& of : said.starts) of.pool_trials = bodies;
     // Of the chain as a whole: for all bodies as they were seen.
     const std::vector<FirstRow> as_seen{std::monostate{}};
-    if (said.whole.walks == 0 && !pool.scattered.starts.empty())
+    if (said.walks == 0 && !pool.scattered.starts.empty())
       result.assumptions = check_assumptions(map, problem.field, pool, as_seen, chains.per_leaf(),
                                              said.coordinates, seed);
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
-    said.whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);
+    whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);
     said.states = kernel.space.size();
     said.nonzeros = kernel.nonzeros();
   }
@@ -514,12 +525,12 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   for (std::size_t i = 0; i < starts.size(); ++i) {
     StartAnswer& a = result.starts.emplace_back();
     if (bodies >= kLeastBodies) {
-      a = chain_answer(problem.field, bodies, bodies, said, i, seed);
+      a = chain_answer(problem.field, bodies, said, i, seed);
     } else {
       const double unknown = std::nan("");
       a.error = {unknown, unknown, unknown};
       a.kernel_error_95 = unknown;
-      a.final = std::move(said.whole.final[i]);
+      a.final = std::move(whole.final[i]);
       a.endings = EndingShares(a.final.endings);
       a.exits = exits_of(exit_shares(a.final), {}, {});
       a.gates_95.fill(
@@ -564,7 +575,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
-      errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k], said.coordinates)
+      errors.push_back(GroupSpread(said.starts[k].whole, said.starts[k].kernels, said.coordinates)
                            .error(pool.trials(), options.seed)
                            .total_variation);
     result.kernel_error_95 = median(errors);
