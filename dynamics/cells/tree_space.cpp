@@ -90,19 +90,20 @@ class Grower {
       return std::max_element(entries.begin(), end, less_along(axis))->at[axis];
     };
     if (const double from = largest(middle); from < median) return {n / 2, from, median};
-    const auto from =
+    // Entries at the median lie from `equal` to `above`.
+    const auto equal =
         std::partition(entries.begin(), middle, [&](const Seen& e) { return e.at[axis] < median; });
-    const auto to =
+    const auto above =
         std::partition(middle, entries.end(), [&](const Seen& e) { return e.at[axis] <= median; });
-    const auto low = static_cast<std::size_t>(from - entries.begin());
-    const auto high = static_cast<std::size_t>(to - entries.begin());
+    const auto low = static_cast<std::size_t>(equal - entries.begin());
+    const auto high = static_cast<std::size_t>(above - entries.begin());
     const auto fits = [&](std::size_t below) {
       return below >= per_leaf_ && n - below >= per_leaf_;
     };
     const bool low_is_nearer = n / 2 - low <= high - n / 2;
-    if (fits(low) && (low_is_nearer || !fits(high))) return {low, largest(from), median};
+    if (fits(low) && (low_is_nearer || !fits(high))) return {low, largest(equal), median};
     if (!fits(high)) return {};
-    return {high, median, std::min_element(to, entries.end(), less_along(axis))->at[axis]};
+    return {high, median, std::min_element(above, entries.end(), less_along(axis))->at[axis]};
   }
 
   void add(Entries entries) {

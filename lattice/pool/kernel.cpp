@@ -184,9 +184,9 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   const Section& section = map.section;
   EntryTable entries(section);
   std::vector<std::uint8_t> types;
-  const auto counts = static_cast<std::size_t>(2 * kernel_runs(pool) / group.of);
-  entries.reserve(counts);
-  types.reserve(counts);
+  const auto about = static_cast<std::size_t>(2 * kernel_runs(pool) / group.of);
+  entries.reserve(about);
+  types.reserve(about);
   each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     entries.push_back(entry);
     if (images[run.type] == 2) entries.push_back(mirrored(section, entry));

@@ -260,17 +260,17 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
     });
   const std::size_t n = starts.size();
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
-  PoolAnswers said{.starts = std::vector<PoolAnswer>(n),
-                   .states = chains_.front().kernel.space.size(),
-                   .nonzeros = chains_.front().kernel.nonzeros(),
-                   .coordinates = coordinates_cut(chains_.front().kernel.space)};
+  const Kernel& all = chains_.front().kernel;
+  PoolAnswers said{std::vector<PoolAnswer>(n), all.space.size(), all.nonzeros()};
+  const int coordinates = coordinates_cut(all.space);
   for (std::size_t i = 0; i < n; ++i) {
     PoolAnswer& of = said.starts[i];
     of.groups.resize(kTrialGroups);
     if (with_kernels) of.kernels.resize(kTrialGroups);
     of.pool_trials = pool.trials();
+    of.coordinates = coordinates;
     if (const auto* const own = std::get_if<const OwnRuns*>(&starts[i]))
-      of.unseen = missing_mass(chains_.front().kernel, map_, field_, **own);
+      of.unseen = missing_mass(all, map_, field_, **own);
   }
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
@@ -281,10 +281,10 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
         answers(chain, g,
                 first_rows(chain.kernel, map_, pool, starts,
                            map_.type_of(field_.start_column(), field_.start_row), groups));
-    if (g < 0) said.walks = found.walks;
     const auto at = static_cast<std::size_t>(g);
     for (std::size_t i = 0; i < n; ++i) {
       PoolAnswer& of = said.starts[i];
+      if (g < 0) of.walks = found.walks;
       (g < 0 ? of.whole : of.groups[at]) = std::move(found.final[i]);
       if (g >= 0 && with_kernels) of.kernels[at] = std::move(found.final[n + i]);
     }
@@ -295,7 +295,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
 bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
                              PoolAnswers& said) const {
   const int leaf = ending_leaf(pool, ending_per_leaf_);
-  if (said.walks > 0 || leaf >= ending_per_leaf_) return false;
+  if (said.by_walks() || leaf >= ending_per_leaf_) return false;
   std::array<std::vector<std::optional<SmallLeaves>>, kTrialGroups + 1> found;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};

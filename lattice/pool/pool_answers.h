@@ -75,8 +75,10 @@ struct PoolAnswer {
   /// (kTrialGroups) Predictions of each group's kernel with the first runs of all trials: their
   /// spread shows the kernel's part of the error. Empty if answers come from Monte Carlo walks.
   std::vector<markov::FinalDistribution> kernels{};
+  std::int64_t walks = 0;        // see KernelAnswers
   double unseen = 0.0;           // missing_mass()
   std::int64_t pool_trials = 0;  // number of trials that the pool had
+  int coordinates = 0;           // number of coordinates by which the states differ
   /// Endings from small leaves, once they are asked for (PoolChains::add_endings). Without them the
   /// endings are those of `whole` and `groups`.
   std::optional<PoolSmallLeaves> small_leaves{};
@@ -88,10 +90,11 @@ struct PoolAnswer {
 
 struct PoolAnswers {
   std::vector<PoolAnswer> starts{};
-  std::int64_t walks = 0;  // see KernelAnswers
   int states = 0;
   std::int64_t nonzeros = 0;
-  int coordinates = 0;  // number of coordinates by which the states differ
+
+  /// Whether answers come from Monte Carlo walks.
+  [[nodiscard]] bool by_walks() const { return !starts.empty() && starts.front().walks > 0; }
 };
 
 /// The chains of a pool that grows. Kernels are kept while only first runs are added.

@@ -45,24 +45,23 @@ void widen(std::array<double, 2>& interval, double share) {
   interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
 }
 
-/// The chain's answer for start number `i`, with error bars. `first_runs`: behind the chain's first
-/// row.
-StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, const PoolAnswers& said,
-                         std::size_t i, std::uint64_t seed) {
-  const PoolAnswer& of = said.starts[i];
+/// The chain's answer with error bars. `first_runs`: behind the chain's first row; `pool_trials`:
+/// behind its other rows.
+StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs,
+                         std::int64_t pool_trials, const PoolAnswer& of, std::uint64_t seed) {
   StartAnswer a;
   a.first_runs = first_runs;
   a.unseen = of.unseen;
   a.final = of.whole;
   std::vector<FinalDistribution> groups = of.groups;
-  const std::int64_t behind = std::min(first_runs, of.pool_trials);
-  const double chance = chance_of_walks(a.final, said.walks);
-  a.error = GroupSpread(a.final, groups, said.coordinates).error(behind, seed);
+  const std::int64_t behind = std::min(first_runs, pool_trials);
+  const double chance = chance_of_walks(a.final, of.walks);
+  a.error = GroupSpread(a.final, groups, of.coordinates).error(behind, seed);
   a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + a.unseen);
   a.kernel_error_95 = of.kernels.empty()
                           ? a.error.total_variation
-                          : std::min(1.0, GroupSpread(a.final, of.kernels, said.coordinates)
-                                                  .error(of.pool_trials, seed)
+                          : std::min(1.0, GroupSpread(a.final, of.kernels, of.coordinates)
+                                                  .error(pool_trials, seed)
                                                   .total_variation +
                                               a.unseen);
   if (of.small_leaves) {
@@ -70,13 +69,13 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, cons
     for (std::size_t g = 0; g < groups.size(); ++g)
       groups[g] = with_endings(std::move(groups[g]), of.small_leaves->groups[g].endings);
   }
-  const GroupSpread spread(a.final, groups, said.coordinates);
+  const GroupSpread spread(a.final, groups, of.coordinates);
   a.endings = spread.endings_95(behind);
   a.gates_95 = spread.gates_95(behind);
   std::vector<ExitShares> group_exits;
   for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
   Evidence from = evidence_of(a.final, behind);
-  from.bias_left = bias_left(said.coordinates);
+  from.bias_left = bias_left(of.coordinates);
   a.exits = exits_of_groups(exit_shares(a.final), group_exits, from);
   if (a.unseen > 0.0) {  // the RMSE is largest if they all move from one gate to another
     const auto gates = static_cast<double>(a.gates_95[0].size());
@@ -93,11 +92,10 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, cons
   return a;
 }
 
-/// The chain's answer for start number `i`, or the shares of the start's own trials if these are
-/// more precise.
-StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, const PoolAnswers& said,
-                      std::size_t i, std::uint64_t seed) {
-  StartAnswer a = chain_answer(field, s.first_runs(), said, i, seed);
+/// The chain's answer, or the shares of the start's own trials if these are more precise.
+StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, const PoolAnswer& of,
+                      std::uint64_t seed) {
+  StartAnswer a = chain_answer(field, s.first_runs(), of.pool_trials, of, seed);
   a.start = s.start;
   a.trials = std::ssize(s.full.endings);
   if (a.trials == 0) return a;
@@ -210,13 +208,15 @@ class PredictionRun {
     std::vector<std::size_t> by_chain;
     for (const std::size_t k : all())
       if (!result_.starts[k].from_trials) by_chain.push_back(k);
+    if (by_chain.empty()) return {};
+    const PoolAnswer& of = said_.starts[by_chain.front()];
     std::optional<GroupedMaps> chain, small_leaves;
-    if (by_chain.size() == 1) {
-      chain = said_.starts[by_chain.front()].maps();
-      small_leaves = said_.starts[by_chain.front()].maps_of_small_leaves();
+    if (by_chain.size() == 1 && all_asked_) {
+      chain = of.maps();
+      small_leaves = of.maps_of_small_leaves();
     }
     return check_assumptions(problem_.map(), problem_.field, pool_, rows_of(by_chain),
-                             chains_.per_leaf(), said_.coordinates, options_.seed, std::move(chain),
+                             chains_.per_leaf(), of.coordinates, options_.seed, std::move(chain),
                              small_leaves);
   }
 
@@ -245,8 +245,8 @@ class PredictionRun {
   /// Computes the answers for the open starts, and closes those that are precise enough. Returns
   /// false if no more trials are wanted, or if they would not help.
   [[nodiscard]] bool ask() {
-    // With the adjoint all starts cost as much as one. Closed starts are therefore asked again in
-    // each round, which corrects error bars that were small by chance.
+    // While so many starts are open that the adjoint pays, closed ones are asked again at no cost,
+    // which corrects error bars that were small by chance.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
     const std::vector<std::size_t> asked = open_;
     all_asked_ = asked.size() == result_.starts.size();
@@ -257,28 +257,29 @@ class PredictionRun {
     said_ = std::move(said);
     result_.states = said_.states;
     result_.nonzeros = said_.nonzeros;
-    by_walks_ = said_.walks > 0;
+    by_walks_ = said_.starts[asked.front()].walks > 0;
     answer(asked);
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
     });
-    if (open_.empty() && must_ask_all()) return ask_all();
+    if (open_.empty() && must_ask_all()) {
+      open_ = all();
+      return ask();
+    }
     // The walks have their own sampling error: if it makes up half of the error, more trials do not
     // help.
     return !open_.empty() && std::none_of(asked.begin(), asked.end(), [&](std::size_t k) {
-      return chance_of_walks(said_.starts[k].whole, said_.walks) >= 0.5 * options_.accuracy;
+      return chance_of_walks(said_.starts[k].whole, said_.starts[k].walks) >=
+             0.5 * options_.accuracy;
     });
   }
 
-  /// All answers of few starts come from the last pool. Many starts keep the answers that closed
-  /// them: each time that all are asked by the adjoint, a prediction takes about a fifth longer,
-  /// and some bars are slightly too large again.
+  /// Whether closed starts must be asked again before the end. All answers of few starts come from
+  /// the last pool. If the adjoint pays for all starts, those closed keep their answers: each time
+  /// that all are asked, a prediction takes about a fifth longer, and some bars are slightly too
+  /// large again. But no answer comes from walks if it can be exact.
   [[nodiscard]] bool must_ask_all() const {
-    return !all_asked_ && !chains_.by_adjoint(pool_, result_.starts.size());
-  }
-  bool ask_all() {
-    open_ = all();
-    return ask();
+    return !all_asked_ && (by_walks_ || !chains_.by_adjoint(pool_, result_.starts.size()));
   }
 
   [[nodiscard]] std::vector<FirstRow> rows_of(const std::vector<std::size_t>& starts) const {
@@ -292,13 +293,16 @@ class PredictionRun {
     tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
       const std::size_t k = starts[i];
       result_.starts[k] =
-          answer_of(problem_.field, pool_.starts[places_[k]], said_, k, options_.seed);
+          answer_of(problem_.field, pool_.starts[places_[k]], said_.starts[k], options_.seed);
     });
   }
 
   /// Adds the endings from small leaves to all answers.
   void add_endings() {
-    if (must_ask_all()) ask_all();
+    if (must_ask_all()) {
+      open_ = all();
+      static_cast<void>(ask());
+    }
     if (chains_.add_endings(pool_, rows_of(all()), said_)) answer(all());
   }
 
@@ -508,12 +512,11 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
     PoolChains chains(map, problem.field, per_leaf, starts.size(), seed);
     said = chains.ask(pool, rows);
     static_cast<void>(chains.add_endings(pool, rows, said));
-    for (PoolAnswer& of : said.starts) of.pool_trials = bodies;
     // Of the chain as a whole: for all bodies as they were seen.
     const std::vector<FirstRow> as_seen{std::monostate{}};
-    if (said.walks == 0 && !pool.scattered.starts.empty())
+    if (!said.by_walks() && !said.starts.empty() && !pool.scattered.starts.empty())
       result.assumptions = check_assumptions(map, problem.field, pool, as_seen, chains.per_leaf(),
-                                             said.coordinates, seed);
+                                             said.starts.front().coordinates, seed);
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
     whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);
@@ -525,7 +528,7 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   for (std::size_t i = 0; i < starts.size(); ++i) {
     StartAnswer& a = result.starts.emplace_back();
     if (bodies >= kLeastBodies) {
-      a = chain_answer(problem.field, bodies, said, i, seed);
+      a = chain_answer(problem.field, bodies, bodies, said.starts[i], seed);
     } else {
       const double unknown = std::nan("");
       a.error = {unknown, unknown, unknown};
@@ -574,10 +577,11 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     const PoolAnswers said = chains.ask(tried, all);
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
-    for (std::size_t k = 0; k < all.size(); ++k)
-      errors.push_back(GroupSpread(said.starts[k].whole, said.starts[k].kernels, said.coordinates)
-                           .error(pool.trials(), options.seed)
-                           .total_variation);
+    for (const PoolAnswer& of : said.starts)
+      errors.push_back(
+          GroupSpread(of.whole, of.kernels.empty() ? of.groups : of.kernels, of.coordinates)
+              .error(pool.trials(), options.seed)
+              .total_variation);
     result.kernel_error_95 = median(errors);
     result.worst_kernel_error_95 = *std::max_element(errors.begin(), errors.end());
     result.reached = result.kernel_error_95 <= options.accuracy;

@@ -701,6 +701,18 @@ TEST(PooledPrediction, OfARangeHasTheTrialsThatWereAsked) {
   EXPECT_LE(p.kernel_error_95, p.worst_kernel_error_95);
 }
 
+// Answers come from Monte Carlo walks here: the groups show the kernel's error with that of first
+// runs.
+TEST(PooledPrediction, OfARangeInALargeField) {
+  Scene scene = fast_scene();
+  scene.field.columns = scene.field.rows = scene.field.max_gates = 200;
+  RunPool pool;
+  const auto p = pool_range(problem_of(scene), pool, {0, {{{0, 1}, {-1, 1}, {10, 12}}}},
+                            {.accuracy = 0.9, .trials = 100});
+  EXPECT_GT(p.kernel_error_95, 0.0);
+  EXPECT_LT(p.kernel_error_95, 0.9);
+}
+
 TEST(PooledPrediction, RefusesNonsense) {
   const Scene scene = fast_scene();
   RunPool pool;
