@@ -305,7 +305,7 @@ class PredictionRun {
       open_ = all();
       static_cast<void>(ask());
     }
-    if (chains_.add_endings(pool_, rows_of(all()), said_)) answer(all());
+    if (!by_walks_ && chains_.add_endings(pool_, rows_of(all()), said_)) answer(all());
   }
 
   /// The part of the error that comes from the first runs.
