@@ -109,7 +109,7 @@ class PoolChains {
   /// nothing.
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
-  /// True if the starts are so many that the adjoint pays, where it fits into memory.
+  /// True for many starts: the adjoint pays for them if it fits into memory.
   [[nodiscard]] bool are_for_many() const { return per_leaf_ > ending_per_leaf_; }
   /// Least number of entries in a leaf of the chains.
   [[nodiscard]] int per_leaf() const { return per_leaf_; }

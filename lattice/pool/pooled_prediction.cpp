@@ -245,7 +245,7 @@ class PredictionRun {
   /// Computes the answers for the open starts, and closes those that are precise enough. Returns
   /// false if no more trials are wanted, or if they would not help.
   [[nodiscard]] bool ask() {
-    // While so many starts are open that the adjoint pays, closed ones are asked again at no cost,
+    // The adjoint answers for all starts at the cost of one. Closed starts are then asked again,
     // which corrects error bars that were small by chance.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
     const std::vector<std::size_t> asked = open_;
